@@ -1,0 +1,285 @@
+#include "discrete/joint_damage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace antiform::discrete
+{
+namespace
+{
+struct ElementPlace
+{
+  double a, b; ///< ends along the tangent from the joint's centre [m]
+};
+
+ElementPlace
+element_place(const Joints &joints, const std::size_t joint, const int n, const int e)
+{
+  const double R = joints.half_length[joint], l = 2. * R / n;
+  return {-R + e * l, e + 1 == n ? R : -R + (e + 1) * l};
+}
+
+/// Share of the step, from its start, at which a quantity that goes linearly from @p old
+/// to
+/// @p now reaches @p limit; infinity when it does not, 0 when it was there already.
+double share_at_limit(const double old, const double now, const double limit)
+{
+  if (now < limit)
+    return std::numeric_limits<double>::infinity();
+  return old >= limit ? 0. : (limit - old) / (now - old);
+}
+
+Crack make_crack(const Grains &grains,
+                 const Joints &joints,
+                 const std::size_t j,
+                 const int e,
+                 const ElementPlace &place,
+                 const Bond mode,
+                 const StepTime &time)
+{
+  const std::size_t one = joints.first[j], two = joints.second[j];
+  const double turn = 0.5 * (grains.rotation[one] + grains.rotation[two]);
+  const Vec2 installed_normal{joints.normal_x[j], joints.normal_y[j]};
+  const Vec2 normal = rotated(installed_normal, turn), tangent = perpendicular(normal);
+  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
+  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
+  const double s = 0.5 * (place.a + place.b);
+  const Vec2 face1 =
+      grains.position(one) + r1 * rotated(installed_normal, grains.rotation[one]);
+  const Vec2 face2 =
+      grains.position(two) + -r2 * rotated(installed_normal, grains.rotation[two]);
+
+  Crack crack;
+  crack.step = time.step;
+  crack.time = time.time;
+  crack.place = 0.5 * (face1 + face2) + s * tangent;
+  crack.reference_place =
+      grains.reference(one) + r1 * installed_normal + s * perpendicular(installed_normal);
+  crack.orientation = std::atan2(tangent.y, tangent.x);
+  if (crack.orientation <= -0.5 * M_PI)
+    crack.orientation += M_PI;
+  else if (crack.orientation > 0.5 * M_PI)
+    crack.orientation -= M_PI;
+  crack.length = place.b - place.a;
+  crack.mode = mode;
+  crack.layer = joints.group_of(j).layer;
+  crack.joint = j;
+  crack.element = e;
+  return crack;
+}
+
+/// Mean stresses over an element for a trial deformation.
+struct TrialStress
+{
+  double normal, shear;
+};
+TrialStress bonded_stress(const Joints &joints,
+                          const FlatJoint &law,
+                          const std::size_t j,
+                          const ElementPlace &place,
+                          const double slip,
+                          const JointDeformation &d)
+{
+  const double k = joints.stiffness[j], centre = 0.5 * (place.a + place.b);
+  return {k * (d.gap - d.rotation * centre), k / law.stiffness_ratio * (d.shear - slip)};
+}
+
+/// Which strength a bonded element passes in this step, and passes first.
+Bond break_mode(const FlatJoint &law, const TrialStress &old, const TrialStress &now)
+{
+  const double tension = share_at_limit(old.normal, now.normal, law.tensile_strength);
+  // Coulomb: |tau| + sigma tan(phi) = c; |tau| is linear between states of one sign, and
+  // a change of sign within a step that also breaks is beyond any stable step's reach.
+  const double excess_old = std::abs(old.shear) + old.normal * law.tan_friction;
+  const double excess_now = std::abs(now.shear) + now.normal * law.tan_friction;
+  const double shear = excess_now > law.cohesion
+                           ? share_at_limit(excess_old, excess_now, law.cohesion)
+                           : std::numeric_limits<double>::infinity();
+  if (std::isinf(tension) && std::isinf(shear))
+    return Bond::bonded;
+  return tension <= shear ? Bond::broken_in_tension : Bond::broken_in_shear;
+}
+} // namespace
+
+DamagedJoint make_damaged(const Joints &joints, const std::size_t joint)
+{
+  const int n = joints.group_of(joint).law.n_elements;
+  DamagedJoint damaged;
+  damaged.joint = joint;
+  damaged.bond.assign(n, Bond::bonded);
+  damaged.slip.assign(n, 0.);
+  damaged.shear_stress.assign(n, 0.);
+  damaged.normal_stress.assign(n, 0.);
+  return damaged;
+}
+
+void evaluate_damaged(const Grains &grains,
+                      const Joints &joints,
+                      DamagedJoint &damaged,
+                      const JointDeformation &now,
+                      const JointDeformation &before,
+                      const StepTime &time,
+                      std::vector<Crack> *cracks)
+{
+  const std::size_t j = damaged.joint;
+  const FlatJoint &law = joints.group_of(j).law;
+  const int n = law.n_elements;
+  const double weight = joints.weight.empty() ? 1. : joints.weight[j];
+  const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
+  double F = 0., S = 0., M = 0.;
+  bool any_bonded = false;
+  double smallest_gap = std::numeric_limits<double>::infinity();
+
+  for (int e = 0; e < n; ++e)
+  {
+    const ElementPlace place = element_place(joints, j, n, e);
+    const double full = place.b - place.a;
+    double energy_lost = 0.;
+    bool just_broken = false;
+    if (damaged.bond[e] == Bond::bonded && cracks != nullptr && law.breakable)
+    {
+      const TrialStress stress =
+          bonded_stress(joints, law, j, place, damaged.slip[e], now);
+      const Bond mode = break_mode(
+          law, bonded_stress(joints, law, j, place, damaged.slip[e], before), stress);
+      if (mode != Bond::bonded)
+      {
+        energy_lost = element_resultant(k_n, now.gap, now.rotation, place.a, place.b,
+                                        true, law.element_moment)
+                          .strain_energy +
+                      0.5 * stress.shear * stress.shear * full / k_s;
+        damaged.bond[e] = mode;
+        just_broken = true;
+        cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
+      }
+    }
+
+    const bool bonded = damaged.bond[e] == Bond::bonded;
+    const ElementResultant normal = element_resultant(
+        k_n, now.gap, now.rotation, place.a, place.b, bonded, law.element_moment);
+    const double active = normal.active_length;
+    double tau = 0.; // force over the full element area
+    if (bonded)
+      tau = k_s * (now.shear - damaged.slip[e]);
+    else if (active == 0.)
+      damaged.slip[e] = now.shear; // open: carries nothing, remembers where it stands
+    else
+    {
+      const double old_gap = std::min(before.gap - before.rotation * place.a,
+                                      before.gap - before.rotation * place.b);
+      const double new_gap =
+          std::min(now.gap - now.rotation * place.a, now.gap - now.rotation * place.b);
+      if (old_gap >= 0. && !just_broken) // closes within the step: sticks from there on
+        damaged.slip[e] =
+            now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
+      const double k = k_s * active / full;
+      tau = k * (now.shear - damaged.slip[e]);
+      const double limit = law.residual_friction * std::abs(normal.normal_force) / full;
+      if (std::abs(tau) > limit)
+      {
+        const double slip_increment = (std::abs(tau) - limit) / k;
+        const double sliding = std::copysign(limit, tau);
+        if (!just_broken)
+          damaged.slip_energy +=
+              weight * 0.5 *
+              (std::min(std::abs(damaged.shear_stress[e]), limit) + limit) * full *
+              slip_increment;
+        damaged.slip[e] += std::copysign(slip_increment, tau);
+        tau = sliding;
+      }
+    }
+    if (just_broken)
+    {
+      const double kept =
+          normal.strain_energy +
+          (active > 0. ? 0.5 * tau * tau * full * full / (k_s * active) : 0.);
+      damaged.fracture_energy += weight * (energy_lost - kept);
+    }
+    damaged.shear_stress[e] = tau;
+    damaged.normal_stress[e] = normal.normal_force / full;
+    F += normal.normal_force;
+    M += normal.moment;
+    S += tau * full;
+    any_bonded = any_bonded || bonded;
+    smallest_gap = std::min({smallest_gap, now.gap - now.rotation * place.a,
+                             now.gap - now.rotation * place.b});
+  }
+
+  // Parted for good: the faces are a face length apart, or have slid off one another.
+  const double R = joints.half_length[j];
+  if (!any_bonded && (smallest_gap > R || std::abs(now.shear) > 2. * R))
+    damaged.removed = true;
+  damaged.gap = now.gap;
+  damaged.shear = now.shear;
+  damaged.rotation = now.rotation;
+  if (damaged.removed)
+  {
+    damaged.force = {0., 0., 0., 0.};
+    return;
+  }
+
+  F *= weight;
+  S *= weight;
+  M *= weight;
+  const std::size_t one = joints.first[j], two = joints.second[j];
+  const double turn = 0.5 * (grains.rotation[one] + grains.rotation[two]);
+  const Vec2 n_now = rotated({joints.normal_x[j], joints.normal_y[j]}, turn);
+  const double half = 0.5 * (grains.rotation[two] - grains.rotation[one]);
+  const double face_cos = std::cos(half), face_sin = std::sin(half);
+  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
+  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
+  double gap = now.gap, shear = now.shear; // levers are geometric: without prestress
+  if (!joints.initial_gap.empty())
+  {
+    gap -= joints.initial_gap[j];
+    shear -= joints.initial_shear[j];
+  }
+  damaged.force = {
+      S * n_now.y - F * n_now.x, -F * n_now.y - S * n_now.x,
+      (r1 * face_cos + 0.5 * gap) * S - (0.5 * shear - r1 * face_sin) * F - M,
+      (r2 * face_cos + 0.5 * gap) * S - (0.5 * shear + r2 * face_sin) * F + M};
+}
+
+double strain_energy(const Joints &joints, const DamagedJoint &damaged)
+{
+  if (damaged.removed)
+    return 0.;
+  const std::size_t j = damaged.joint;
+  const FlatJoint &law = joints.group_of(j).law;
+  const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
+  double energy = 0.;
+  for (int e = 0; e < law.n_elements; ++e)
+  {
+    const ElementPlace place = element_place(joints, j, law.n_elements, e);
+    const ElementResultant normal =
+        element_resultant(k_n, damaged.gap, damaged.rotation, place.a, place.b,
+                          damaged.bond[e] == Bond::bonded, law.element_moment);
+    energy += normal.strain_energy;
+    const double full = place.b - place.a, tau = damaged.shear_stress[e];
+    if (normal.active_length > 0.)
+      energy += 0.5 * tau * tau * full * full / (k_s * normal.active_length);
+  }
+  return energy * (joints.weight.empty() ? 1. : joints.weight[j]);
+}
+
+void break_element(const Grains &grains,
+                   Joints &joints,
+                   const std::size_t joint,
+                   const int element,
+                   const Bond mode)
+{
+  const JointDeformation now = deformation(grains, joints, joint);
+  if (joints.damage[joint] < 0)
+  {
+    joints.damage[joint] = static_cast<std::int32_t>(joints.damaged.size());
+    joints.damaged.push_back(make_damaged(joints, joint));
+  }
+  DamagedJoint &damaged = joints.damaged[joints.damage[joint]];
+  evaluate_damaged(grains, joints, damaged, now, now, {}, nullptr);
+  const double before = strain_energy(joints, damaged);
+  damaged.bond[element] = mode;
+  evaluate_damaged(grains, joints, damaged, now, now, {}, nullptr);
+  damaged.fracture_energy += before - strain_energy(joints, damaged);
+}
+} // namespace antiform::discrete

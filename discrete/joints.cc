@@ -1,0 +1,221 @@
+#include "discrete/joints.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace antiform::discrete
+{
+void Joints::begin_group(const FlatJoint &law, const int layer, const std::string &name)
+{
+  JointGroup group;
+  group.begin = group.end = size();
+  group.law = law;
+  group.layer = layer;
+  group.name = name;
+  groups.push_back(group);
+}
+
+void Joints::add(const Grains &grains,
+                 const std::int32_t i,
+                 const std::int32_t j,
+                 const double modulus_i,
+                 const double modulus_j)
+{
+  assert(!groups.empty() && i != j);
+  const Vec2 branch = grains.position(j) - grains.position(i);
+  const double distance = norm(branch);
+  first.push_back(i);
+  second.push_back(j);
+  normal_x.push_back(branch.x / distance);
+  normal_y.push_back(branch.y / distance);
+  length.push_back(distance);
+  // The contact point is in the middle of the gap (or overlap): r = R + gap/2.
+  lever_difference.push_back(grains.radius[j] - grains.radius[i]);
+  stiffness.push_back(1. / (grains.radius[i] / modulus_i + grains.radius[j] / modulus_j));
+  half_length.push_back(groups.back().law.radius_multiplier *
+                        std::min(grains.radius[i], grains.radius[j]));
+  damage.push_back(-1);
+  would_break.push_back(0);
+  force.push_back({0., 0., 0., 0.});
+  groups.back().end = size();
+}
+
+void Joints::finish(const std::size_t n_grains)
+{
+  grain_begin.assign(n_grains + 1, 0);
+  for (std::size_t j = 0; j < size(); ++j)
+  {
+    ++grain_begin[first[j] + 1];
+    ++grain_begin[second[j] + 1];
+  }
+  for (std::size_t i = 0; i < n_grains; ++i)
+    grain_begin[i + 1] += grain_begin[i];
+  grain_joint.resize(2 * size());
+  std::vector<std::int32_t> next(grain_begin.begin(), grain_begin.end() - 1);
+  for (std::size_t j = 0; j < size(); ++j)
+  {
+    grain_joint[next[first[j]]++] = static_cast<std::int32_t>(2 * j);
+    grain_joint[next[second[j]]++] = static_cast<std::int32_t>(2 * j + 1);
+  }
+}
+
+const JointGroup &Joints::group_of(const std::size_t joint) const
+{
+  for (const JointGroup &group : groups)
+    if (joint < group.end)
+      return group;
+  return groups.back();
+}
+
+JointDeformation
+deformation(const Grains &grains, const Joints &joints, const std::size_t j)
+{
+  const std::size_t one = joints.first[j], two = joints.second[j];
+  const double half1 = 0.5 * grains.rotation[one], half2 = 0.5 * grains.rotation[two];
+  const double c1 = std::cos(half1), s1 = std::sin(half1);
+  const double c2 = std::cos(half2), s2 = std::sin(half2);
+  const double frame_cos = c1 * c2 - s1 * s2, frame_sin = c1 * s2 + s1 * c2;
+  const double nx = frame_cos * joints.normal_x[j] - frame_sin * joints.normal_y[j];
+  const double ny = frame_sin * joints.normal_x[j] + frame_cos * joints.normal_y[j];
+  const double ux = grains.displacement_x[two] - grains.displacement_x[one];
+  const double uy = grains.displacement_y[two] - grains.displacement_y[one];
+
+  JointDeformation d;
+  d.gap = ux * nx + uy * ny - 2. * joints.length[j] * s1 * s2;
+  d.shear = uy * nx - ux * ny - joints.length[j] * frame_sin -
+            joints.lever_difference[j] * (c1 * s2 - s1 * c2);
+  d.rotation = grains.rotation[two] - grains.rotation[one];
+  if (!joints.initial_gap.empty())
+  {
+    d.gap += joints.initial_gap[j];
+    d.shear += joints.initial_shear[j];
+    d.rotation += joints.initial_rotation[j];
+  }
+  return d;
+}
+
+StiffnessSums
+stiffness_sums(const Grains &grains, const Joints &joints, const bool weighted)
+{
+  StiffnessSums sums{std::vector<double>(grains.size(), 0.),
+                     std::vector<double>(grains.size(), 0.)};
+  for (const JointGroup &group : joints.groups)
+    for (std::size_t j = group.begin; j < group.end; ++j)
+    {
+      const double full = 2. * joints.half_length[j];
+      double normal = joints.stiffness[j] * full;
+      if (weighted && !joints.weight.empty())
+        normal *= joints.weight[j];
+      const double shear = normal / group.law.stiffness_ratio;
+      const double bending = normal * full * full / 12.;
+      for (const int side : {0, 1})
+      {
+        const std::size_t i = side == 0 ? joints.first[j] : joints.second[j];
+        const double lever = 0.5 * (joints.length[j] +
+                                    (side == 0 ? -1. : 1.) * joints.lever_difference[j]);
+        sums.translation[i] += normal + shear;
+        sums.rotation[i] += shear * lever * lever + bending;
+      }
+    }
+  return sums;
+}
+
+double
+stable_step(const Grains &grains, const Joints &joints, const std::vector<double> &extra)
+{
+  StiffnessSums sums = stiffness_sums(grains, joints, true);
+  if (!extra.empty())
+    for (std::size_t i = 0; i < grains.size(); ++i)
+      sums.translation[i] += extra[i];
+
+  // Joint b has the share k_b / sum(k) of its grains' inertia, so that 1 / share of mass
+  // is sum(k) / (k_b m). Normal motion, and shear with rotation, are uncoupled modes of
+  // it.
+  double largest = 0.;
+  for (const JointGroup &group : joints.groups)
+    for (std::size_t j = group.begin; j < group.end; ++j)
+    {
+      const double full = 2. * joints.half_length[j];
+      const double normal =
+          joints.stiffness[j] * full * (joints.weight.empty() ? 1. : joints.weight[j]);
+      const double shear = normal / group.law.stiffness_ratio;
+      double translation = 0., rotation = 0.;
+      for (const int side : {0, 1})
+      {
+        const std::size_t i = side == 0 ? joints.first[j] : joints.second[j];
+        translation += sums.translation[i] * grains.inverse_mass[i] / (normal + shear);
+        rotation += sums.rotation[i] * grains.inverse_inertia[i];
+      }
+      largest = std::max({largest, normal * translation, shear * translation + rotation});
+    }
+  if (!extra.empty())
+    for (std::size_t i = 0; i < grains.size(); ++i)
+      largest = std::max(largest, sums.translation[i] * grains.inverse_mass[i]);
+  return 2. / std::sqrt(largest);
+}
+
+std::vector<std::pair<std::int32_t, std::int32_t>>
+pairs_within(const Grains &grains,
+             const double installation_gap,
+             const int region_i,
+             const int region_j)
+{
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  if (grains.size() == 0)
+    return pairs;
+  double x_min = 1e300, x_max = -1e300, y_min = 1e300, y_max = -1e300, largest = 0.;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const Vec2 p = grains.position(i);
+    x_min = std::min(x_min, p.x);
+    x_max = std::max(x_max, p.x);
+    y_min = std::min(y_min, p.y);
+    y_max = std::max(y_max, p.y);
+    largest = std::max(largest, grains.radius[i]);
+  }
+  // No coarser than a few hundred thousand cells in all: a stray grain far away costs
+  // nothing then.
+  const double reach = 2. * largest + std::max(0., installation_gap);
+  const double cell =
+      std::max(reach, std::sqrt((x_max - x_min + reach) * (y_max - y_min + reach) / 4e5));
+  const auto n_x = static_cast<std::int64_t>((x_max - x_min) / cell) + 1;
+  const auto n_y = static_cast<std::int64_t>((y_max - y_min) / cell) + 1;
+  std::vector<std::int32_t> head(n_x * n_y, -1), next(grains.size(), -1);
+  const auto column = [&](const double x)
+  { return static_cast<std::int64_t>((x - x_min) / cell); };
+  const auto row = [&](const double y)
+  { return static_cast<std::int64_t>((y - y_min) / cell); };
+  for (std::size_t i = grains.size(); i-- > 0;)
+  {
+    const Vec2 p = grains.position(i);
+    std::int32_t &cell_head = head[row(p.y) * n_x + column(p.x)];
+    next[i] = cell_head;
+    cell_head = static_cast<std::int32_t>(i);
+  }
+
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const Vec2 p = grains.position(i);
+    const int region = grains.region[i];
+    if (region != region_i && region != region_j)
+      continue;
+    const int wanted = region == region_i ? region_j : region_i;
+    for (std::int64_t r = std::max<std::int64_t>(0, row(p.y) - 1);
+         r <= std::min(n_y - 1, row(p.y) + 1); ++r)
+      for (std::int64_t c = std::max<std::int64_t>(0, column(p.x) - 1);
+           c <= std::min(n_x - 1, column(p.x) + 1); ++c)
+        for (std::int32_t j = head[r * n_x + c]; j >= 0; j = next[j])
+        {
+          if (j <= static_cast<std::int32_t>(i) || grains.region[j] != wanted)
+            continue;
+          const Vec2 branch = grains.position(j) - p;
+          const double limit = grains.radius[i] + grains.radius[j] + installation_gap;
+          if (dot(branch, branch) <= limit * limit)
+            pairs.emplace_back(static_cast<std::int32_t>(i), j);
+        }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+} // namespace antiform::discrete

@@ -1,0 +1,86 @@
+#include "discrete/walls.h"
+
+namespace antiform::discrete
+{
+namespace
+{
+double gap_to(const Wall &wall, const Grains &grains, const std::int32_t i)
+{
+  // Differences of displacements, so that nothing moves exactly when nothing has moved.
+  const Vec2 displacement{grains.displacement_x[i], grains.displacement_y[i]};
+  return dot(grains.reference(i) - wall.point, wall.normal) - grains.radius[i] +
+         (dot(displacement, wall.normal) - wall.displacement);
+}
+
+double elastic_gap(const Wall &wall, const WallContact &contact, const Grains &grains)
+{
+  const Vec2 displacement{grains.displacement_x[contact.grain],
+                          grains.displacement_y[contact.grain]};
+  const double installed =
+      dot(grains.reference(contact.grain) - wall.point, wall.normal) -
+      grains.radius[contact.grain] - contact.reference_gap;
+  return installed + (dot(displacement, wall.normal) - wall.displacement) +
+         contact.initial_gap;
+}
+} // namespace
+
+void install_wall_contacts(const Grains &grains,
+                           Wall &wall,
+                           const double reach,
+                           const double installation_gap,
+                           const std::vector<double> &modulus)
+{
+  wall.contacts.clear();
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const double gap = gap_to(wall, grains, static_cast<std::int32_t>(i));
+    if (gap > reach)
+      continue;
+    WallContact contact;
+    contact.grain = static_cast<std::int32_t>(i);
+    contact.reference_gap = gap <= installation_gap ? gap : 0.;
+    contact.stiffness = 2. * modulus[grains.region[i]];
+    wall.contacts.push_back(contact);
+  }
+}
+
+void add_wall_forces(Grains &grains, Wall &wall)
+{
+  wall.reaction = 0.;
+  for (const WallContact &contact : wall.contacts)
+  {
+    const double gap = elastic_gap(wall, contact, grains);
+    if (gap >= 0.)
+      continue;
+    const double push = -contact.weight * contact.stiffness * gap;
+    grains.force_x[contact.grain] += push * wall.normal.x;
+    grains.force_y[contact.grain] += push * wall.normal.y;
+    wall.reaction += push;
+  }
+}
+
+double region_reaction(const Grains &grains, const Wall &wall, const int region)
+{
+  double sum = 0.;
+  for (const WallContact &contact : wall.contacts)
+    if (grains.region[contact.grain] == region)
+    {
+      const double gap = elastic_gap(wall, contact, grains);
+      if (gap < 0.)
+        sum -= contact.weight * contact.stiffness * gap;
+    }
+  return sum;
+}
+
+double wall_energy(const Grains &grains, const Wall &wall)
+{
+  double energy = 0.;
+  for (const WallContact &contact : wall.contacts)
+  {
+    const double gap = elastic_gap(wall, contact, grains);
+    if (gap < 0.)
+      energy += 0.5 * contact.weight * contact.stiffness * gap * gap;
+  }
+  return energy;
+}
+} // namespace antiform::discrete

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "discrete/grains.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace antiform::discrete
+{
+/// Contact of a grain with a wall: stress-free at its reference gap, no tension, no
+/// shear.
+struct WallContact
+{
+  std::int32_t grain = 0;
+  double reference_gap = 0.; ///< [m]
+  double stiffness = 0.;     ///< k_n [N/m]: 2 E* (A = 2 R, L = R)
+  double weight = 1.;        ///< bridging weight of the grain [-]
+  double initial_gap = 0.;   ///< elastic gap that the prestress stands for, <= 0 [m]
+};
+
+/// Rigid frictionless wall: a straight line that moves along its normal.
+struct Wall
+{
+  Vec2 point;                        ///< of the wall in the reference section [m]
+  Vec2 normal;                       ///< unit, into the grains
+  double displacement = 0.;          ///< along the normal so far [m]
+  double velocity = 0.;              ///< along the normal, half-step [m/s]
+  std::vector<WallContact> contacts; ///< in the order of grains
+
+  double reaction = 0.; ///< pressing force of the last evaluation, weighted [N]
+  double work = 0.;     ///< done on the grains so far [J]
+};
+
+/// Let @p wall hold every grain whose gap to it is at most @p reach [m], stress-free
+/// where it stands when the gap is at most @p installation_gap, at contact otherwise.
+/// \param modulus E* of each grain's region [Pa]
+void install_wall_contacts(const Grains &grains,
+                           Wall &wall,
+                           double reach,
+                           double installation_gap,
+                           const std::vector<double> &modulus);
+
+/// Add the wall's forces to the grains; sets reaction.
+void add_wall_forces(Grains &grains, Wall &wall);
+
+/// Part of the wall's present pressing force that grains of @p region take [N].
+double region_reaction(const Grains &grains, const Wall &wall, int region);
+
+/// Strain energy of the wall's contacts [J].
+double wall_energy(const Grains &grains, const Wall &wall);
+} // namespace antiform::discrete
