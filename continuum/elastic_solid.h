@@ -1,0 +1,157 @@
+#pragma once
+
+#include "continuum/point_locator.h"
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/base/point.h>
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/types.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace antiform::continuum
+{
+/// Plane-strain linear elastic material: in-plane stiffness in Voigt order
+/// (xx, yy, xy with engineering shear) [Pa], bulk density [kg/m^3].
+struct ElasticMaterial
+{
+  std::array<std::array<double, 3>, 3> stiffness{};
+  double density = 0.;
+  std::string name;
+
+  static ElasticMaterial isotropic(double young_modulus,
+                                   double poisson_ratio,
+                                   double density,
+                                   const std::string &name = "");
+};
+
+using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+/// Shape functions at a point: the field there is sum_k value[k] u[dof_x[k]], and with
+/// dof_y its y component.
+struct PointEvaluation
+{
+  std::vector<dealii::types::global_dof_index> dof_x, dof_y;
+  std::vector<double> value; ///< N_k(point) [-]
+};
+
+/// Small-strain elastic body: two displacements a node, Q1 or Q2 cells. Stiffness, mass
+/// and loads carry the weight w_C(x) of the bridging domain where one is given. Runs on
+/// any number of ranks; on one rank a dof's local index is its global one.
+class ElasticSolid
+{
+public:
+  /// \param materials indexed by the cells' material id
+  /// \param weight    w_C at a point, evaluated at quadrature points; empty: 1 everywhere
+  ElasticSolid(const dealii::parallel::distributed::Triangulation<2> &triangulation,
+               std::vector<ElasticMaterial> materials,
+               unsigned int degree,
+               std::function<double(const dealii::Point<2> &)> weight = {});
+
+  const dealii::DoFHandler<2> &dof_handler() const { return dof_handler_; }
+  unsigned int degree() const { return degree_; }
+  const dealii::FESystem<2> &fe() const { return fe_; }
+  const std::vector<ElasticMaterial> &materials() const { return materials_; }
+  /// w_C at a point [-].
+  double weight(const dealii::Point<2> &point) const
+  {
+    return weight_ ? weight_(point) : 1.;
+  }
+  /// x or y (0, 1) of a global dof, and the place of its node.
+  unsigned int component(dealii::types::global_dof_index dof) const;
+  dealii::Point<2> support_point(dealii::types::global_dof_index dof) const;
+
+  /// Shape functions of this mesh at a point; throws std::out_of_range if the point lies
+  /// outside the cells that this rank knows by more than 1e-8 of a cell.
+  PointEvaluation shape_values(const dealii::Point<2> &point) const;
+  /// Bilinear functions of the cell's four vertices at a point, with the dofs of those
+  /// vertices: the multiplier space, also under Q2 cells. Throws as shape_values().
+  PointEvaluation vertex_values(const dealii::Point<2> &point) const;
+  /// Whether the point lies in a cell that this rank knows.
+  bool contains(const dealii::Point<2> &point) const { return locator_.contains(point); }
+
+  /// System matrix K = integral w_C B^T C B, without boundary conditions [N/m].
+  const dealii::TrilinosWrappers::SparseMatrix &stiffness() const { return stiffness_; }
+  /// Geometric stiffness integral w_C grad N_a . S grad N_b of a uniform initial stress
+  /// (tension positive) [N/m]; same sparsity as stiffness().
+  dealii::TrilinosWrappers::SparseMatrix
+  geometric_stiffness(const dealii::SymmetricTensor<2, 2> &initial_stress) const;
+  /// Lumped mass (Gauss-Lobatto points, so positive for Q2 too), weighted: w_C rho [kg].
+  const Vector &lumped_mass() const { return lumped_mass_; }
+
+  /// A ghosted vector of this body's dofs, zero.
+  Vector make_vector() const;
+
+  /// Add -K u to @p force (owned entries). @p displacement must have its ghosts set. Uses
+  /// OpenMP; each row is summed in a fixed order.
+  void add_internal_force(const Vector &displacement, Vector &force) const;
+  /// Add to K and to the rows of add_internal_force() a spring on a boundary: foundation.
+  void add_to_stiffness(const dealii::TrilinosWrappers::SparseMatrix &matrix);
+
+  /// Rigorous stable step of the unconstrained body for given inverse masses (0 where the
+  /// motion is prescribed): 2 / omega, omega^2 <= max over rows of sum |K_JK| / M_J. No
+  /// safety factor. Collective.
+  double stable_step(const Vector &inverse_mass) const;
+  /// Row sums sum_K |K_JK| (owned entries) [N/m].
+  Vector absolute_row_sums() const;
+
+  /// Strain (xx, yy, xy-engineering) and stress (initial stress not included) averaged
+  /// over each active locally owned cell, in cell order.
+  struct CellState
+  {
+    std::array<double, 3> strain, stress;
+    double rotation; ///< of the mean displacement gradient [rad]
+    double area;     ///< [m^2]
+    double weight;   ///< mean w_C [-]
+    unsigned int material;
+  };
+  std::vector<CellState> cell_states(const Vector &displacement) const;
+
+  /// 1/2 u.K u, foundation included; collective [J].
+  double strain_energy(const Vector &displacement) const;
+
+  const dealii::IndexSet &locally_owned() const { return locally_owned_; }
+  const dealii::IndexSet &locally_relevant() const { return locally_relevant_; }
+
+private:
+  /// A rank's rows of K in blocks of one node: two rows (x, y) and two columns, since the
+  /// two dofs of a node are neighbours. Columns are local node numbers (owned nodes, then
+  /// ghosts), in ascending global order, which is the order of summation.
+  struct NodeRows
+  {
+    std::vector<std::size_t> start; ///< node r has blocks start[r] ... start[r+1]
+    std::vector<unsigned int> column;
+    std::vector<std::array<double, 4>> block; ///< xx, xy, yx, yy [N/m]
+  };
+
+  void make_dofs();
+  void assemble_stiffness();
+  void assemble_mass();
+  void build_rows();
+  dealii::TrilinosWrappers::SparseMatrix make_matrix() const;
+  const ElasticMaterial &material(dealii::types::material_id id) const;
+  dealii::FESystem<2> fe_;
+  dealii::DoFHandler<2> dof_handler_;
+  unsigned int degree_;
+  std::vector<ElasticMaterial> materials_;
+  std::function<double(const dealii::Point<2> &)> weight_;
+  dealii::IndexSet locally_owned_, locally_relevant_;
+  dealii::TrilinosWrappers::SparseMatrix stiffness_;
+  Vector lumped_mass_;
+  std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
+  std::vector<unsigned char> components_;        ///< per local dof, ghosts after owned
+  std::vector<dealii::Point<2>> support_points_; ///< per local dof, ghosts after owned
+  NodeRows rows_;
+  PointLocator locator_;
+};
+} // namespace antiform::continuum
