@@ -1,0 +1,126 @@
+#pragma once
+
+#include "continuum/elastic_solid.h"
+#include "coupling/constraint_solver.h"
+#include "coupling/overlap_weight.h"
+#include "discrete/grains.h"
+#include "discrete/joints.h"
+
+#include <optional>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// Sparse rows: entries begin[r] .. begin[r+1] - 1 of row r.
+struct SparseRows
+{
+  std::vector<std::int32_t> begin{0};
+  std::vector<std::int32_t> column;
+  std::vector<double> value;
+
+  std::size_t n_rows() const { return begin.size() - 1; }
+  void add(const std::int32_t c, const double v)
+  {
+    column.push_back(c);
+    value.push_back(v);
+  }
+  void close_row() { begin.push_back(static_cast<std::int32_t>(column.size())); }
+};
+
+/// Joins grains and mesh in an overlap (docs/theory/bridging_domain.md). The multiplier J
+/// lives on a vertex of the mesh and demands, for x and for y,
+///   g_J = sum_i m_i N_J(x_i) (d_i - sum_K N_K(x_i) U_K) = 0,
+/// the sum going over the grains of the overlap with their real masses. Rotations are
+/// free. Topology and reference positions are those of construction. One rank.
+class BridgingDomain
+{
+public:
+  /// \param solid already weighted by weight.mesh()
+  /// \param smallest_mass a vertex is a multiplier when the grains give it more than this
+  ///                      mass; coupling design: 0.02 rho h^2 [kg]
+  BridgingDomain(const discrete::Grains &grains,
+                 const discrete::Joints &joints,
+                 const continuum::ElasticSolid &solid,
+                 OverlapWeight weight,
+                 double smallest_mass);
+
+  /// Mass weight of each grain: mu_i = max(w_D(x_i), w_D of its joints); the largest
+  /// joint weight keeps the stable step of the uncoupled grains.
+  const std::vector<double> &grain_mass_weight() const { return mu_; }
+  /// Lumped real mass of the mesh with the grains' surplus (mu_i - w_D) taken off, at
+  /// least half the weighted mass [kg].
+  const continuum::Vector &mesh_mass() const { return mesh_mass_; }
+
+  /// Build and factorise S = C_D Mi_D C_D^T + C_C Mi_C C_C^T for the inertial masses.
+  void factorise(const discrete::Grains &grains, const continuum::Vector &inverse_mass);
+
+  /// Project half-step velocities onto the constraint: v -= Mi C^T L, S L = C v.
+  void project(discrete::Grains &grains, continuum::Vector &velocity);
+  /// Impulses of the last project() on a mesh dof, (C_C^T L) [N s]; dofs without
+  /// multipliers: 0. The reaction of a prescribed dof needs it.
+  double mesh_impulse(std::size_t dof) const;
+
+  /// Constrained forces: @p fx, @p fy of the grains and @p mesh_force become
+  /// f - C^T L with S L = C Mi f; at rest they vanish where f does not.
+  void constrain_forces(const discrete::Grains &grains,
+                        const continuum::Vector &inverse_mass,
+                        std::vector<double> &fx,
+                        std::vector<double> &fy,
+                        continuum::Vector &mesh_force) const;
+
+  /// Largest |g_J| over the multiplier's mass: the displacement gap [m].
+  double displacement_gap(const discrete::Grains &grains,
+                          const continuum::Vector &displacement) const;
+
+  std::size_t n_multipliers() const { return 2 * grain_rows_.n_rows(); }
+  /// Grains that carry multipliers, ascending; the columns of grain_rows().
+  const std::vector<std::int32_t> &overlap_grains() const { return overlap_grains_; }
+  const OverlapWeight &weight() const { return weight_; }
+  /// Constraint rows of the x components (those of y have the same values): multipliers
+  /// by grains, and by mesh nodes; node k has the dofs node_dofs()[k] (x, y).
+  const SparseRows &grain_rows() const { return grain_rows_; }
+  const SparseRows &mesh_rows() const { return mesh_rows_; }
+  const std::vector<std::array<std::uint32_t, 2>> &node_dofs() const
+  {
+    return node_dofs_;
+  }
+
+private:
+  void weigh_masses(const discrete::Grains &grains,
+                    const discrete::Joints &joints,
+                    const continuum::ElasticSolid &solid);
+  void build_rows(const discrete::Grains &grains,
+                  const continuum::ElasticSolid &solid,
+                  double smallest_mass);
+  /// b = C (grain field, mesh field): x multipliers, then y. The fields are functions of
+  /// a grain's number and of a node's dofs.
+  template <class GrainField, class MeshField>
+  void apply(const GrainField &grain_field,
+             const MeshField &mesh_field,
+             std::vector<double> &b) const;
+  /// Hands (C_D^T L) of each overlap grain and (C_C^T L) of each node to the functions.
+  template <class ToGrain, class ToNode>
+  void apply_transposed(const std::vector<double> &L,
+                        const ToGrain &to_grain,
+                        const ToNode &to_node) const;
+
+  OverlapWeight weight_;
+  std::vector<double> mu_;
+  continuum::Vector mesh_mass_;
+  std::vector<std::int32_t> overlap_grains_;
+  SparseRows grain_rows_, mesh_rows_;       ///< by multiplier
+  SparseRows grain_columns_, mesh_columns_; ///< the same by overlap grain, by mesh node
+  std::vector<std::array<std::uint32_t, 2>> node_dofs_;
+  std::vector<std::string> row_names_;
+  std::vector<double> grain_inverse_mass_; ///< of the overlap grains, as factorised
+  std::vector<std::array<double, 2>> node_inverse_mass_;
+  std::vector<std::int32_t> node_of_dof_; ///< index into node_dofs_, or -1
+  std::vector<double> multiplier_;        ///< L of the last projection
+  std::optional<ConstraintSolver> solver_;
+};
+
+/// Weight of a joint: w_D at its contact point.
+std::vector<double> joint_weights(const discrete::Grains &grains,
+                                  const discrete::Joints &joints,
+                                  const OverlapWeight &weight);
+} // namespace antiform::coupling

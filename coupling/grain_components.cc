@@ -1,0 +1,288 @@
+#include "coupling/grain_components.h"
+
+#include <cmath>
+
+namespace antiform::coupling
+{
+using namespace discrete;
+
+void GrainMotion::run(const Stage stage, const Clock &clock)
+{
+  if (stage == Stage::kick)
+  {
+    if (clock.sample_due)
+      before_ = velocities(state_.grains);
+    discrete::kick(state_.grains, clock.dt, damping);
+  }
+  else
+    discrete::drift(state_.grains, clock.dt);
+}
+
+void GrainMotion::add_energies(Energies &energies) const
+{
+  energies.kinetic += discrete::kinetic_energy(state_.grains, before_);
+}
+
+void GrainMotion::visit_state(StateArchive &archive)
+{
+  Grains &g = state_.grains;
+  archive.array("grains/displacement_x", g.displacement_x);
+  archive.array("grains/displacement_y", g.displacement_y);
+  archive.array("grains/rotation", g.rotation);
+  archive.array("grains/velocity_x", g.velocity_x);
+  archive.array("grains/velocity_y", g.velocity_y);
+  archive.array("grains/spin", g.spin);
+  archive.array("grains/inverse_mass", g.inverse_mass);
+  archive.array("grains/inverse_inertia", g.inverse_inertia);
+}
+
+void Bonds::run(const Stage, const Clock &clock)
+{
+  std::vector<Crack> found;
+  const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
+  evaluate_bonds(state_.grains, state_.joints, now, state_.breaking ? &found : nullptr);
+  sum_joint_forces(state_.grains, state_.joints);
+  if (found.empty())
+    return;
+  const bool first = state_.cracks.empty();
+  state_.cracks.insert(state_.cracks.end(), found.begin(), found.end());
+  if (first && on_first_crack)
+    on_first_crack();
+}
+
+void Bonds::add_energies(Energies &energies) const
+{
+  const JointEnergies joints = joint_energies(state_.grains, state_.joints);
+  energies.strain_grains += joints.strain;
+  energies.slip += joints.slip;
+  energies.fracture += joints.fracture;
+}
+
+namespace
+{
+/// Broken joints as flat arrays, and back.
+void visit_damaged(StateArchive &archive, Joints &joints)
+{
+  std::vector<std::int64_t> joint, bond, removed;
+  std::vector<double> values;
+  if (!archive.is_loading())
+    for (const DamagedJoint &damaged : joints.damaged)
+    {
+      joint.push_back(static_cast<std::int64_t>(damaged.joint));
+      removed.push_back(damaged.removed ? 1 : 0);
+      for (std::size_t e = 0; e < damaged.bond.size(); ++e)
+      {
+        bond.push_back(static_cast<std::int64_t>(damaged.bond[e]));
+        for (const double v :
+             {damaged.slip[e], damaged.shear_stress[e], damaged.normal_stress[e]})
+          values.push_back(v);
+      }
+      for (const double v : {damaged.gap, damaged.shear, damaged.rotation,
+                             damaged.slip_energy, damaged.fracture_energy})
+        values.push_back(v);
+    }
+  archive.array("broken/joint", joint);
+  archive.array("broken/bond", bond);
+  archive.array("broken/removed", removed);
+  archive.array("broken/values", values);
+  if (!archive.is_loading())
+    return;
+  joints.damaged.clear();
+  auto next_bond = bond.begin();
+  auto next = values.begin();
+  for (std::size_t k = 0; k < joint.size(); ++k)
+  {
+    DamagedJoint damaged;
+    damaged.joint = static_cast<std::size_t>(joint[k]);
+    damaged.removed = removed[k] != 0;
+    const int n = joints.group_of(damaged.joint).law.n_elements;
+    for (int e = 0; e < n; ++e)
+    {
+      damaged.bond.push_back(static_cast<Bond>(*next_bond++));
+      damaged.slip.push_back(*next++);
+      damaged.shear_stress.push_back(*next++);
+      damaged.normal_stress.push_back(*next++);
+    }
+    for (double *v : {&damaged.gap, &damaged.shear, &damaged.rotation,
+                      &damaged.slip_energy, &damaged.fracture_energy})
+      *v = *next++;
+    joints.damage[damaged.joint] = static_cast<std::int32_t>(k);
+    joints.damaged.push_back(damaged);
+  }
+}
+
+void visit_cracks(StateArchive &archive, std::vector<Crack> &cracks)
+{
+  std::vector<std::int64_t> integers;
+  std::vector<double> values;
+  if (!archive.is_loading())
+    for (const Crack &crack : cracks)
+    {
+      for (const std::int64_t v :
+           {static_cast<std::int64_t>(crack.step), static_cast<std::int64_t>(crack.mode),
+            static_cast<std::int64_t>(crack.layer),
+            static_cast<std::int64_t>(crack.joint),
+            static_cast<std::int64_t>(crack.element)})
+        integers.push_back(v);
+      for (const double v :
+           {crack.time, crack.place.x, crack.place.y, crack.reference_place.x,
+            crack.reference_place.y, crack.orientation, crack.length})
+        values.push_back(v);
+    }
+  archive.array("cracks/integers", integers);
+  archive.array("cracks/values", values);
+  if (!archive.is_loading())
+    return;
+  cracks.assign(integers.size() / 5, {});
+  auto i = integers.begin();
+  auto v = values.begin();
+  for (Crack &crack : cracks)
+  {
+    crack.step = static_cast<std::uint64_t>(*i++);
+    crack.mode = static_cast<Bond>(*i++);
+    crack.layer = static_cast<int>(*i++);
+    crack.joint = static_cast<std::size_t>(*i++);
+    crack.element = static_cast<int>(*i++);
+    for (double *x :
+         {&crack.time, &crack.place.x, &crack.place.y, &crack.reference_place.x,
+          &crack.reference_place.y, &crack.orientation, &crack.length})
+      *x = *v++;
+  }
+}
+} // namespace
+
+void Bonds::visit_state(StateArchive &archive)
+{
+  visit_damaged(archive, state_.joints);
+  visit_cracks(archive, state_.cracks);
+  std::vector<std::int64_t> would_break(state_.joints.would_break.begin(),
+                                        state_.joints.would_break.end());
+  archive.array("joints/would_break", would_break);
+  if (archive.is_loading())
+  {
+    for (std::size_t j = 0; j < would_break.size(); ++j)
+      state_.joints.would_break[j] = static_cast<unsigned char>(would_break[j]);
+    state_.cracks_recorded = state_.cracks.size();
+  }
+}
+
+void BrokenJoints::run(const Stage, const Clock &clock)
+{
+  const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
+  evaluate_broken_joints(state_.grains, state_.joints, now,
+                         state_.breaking ? &state_.cracks : nullptr);
+}
+
+void GrainContacts::run(const Stage, const Clock &clock)
+{
+  add_contact_forces(state_.grains, contacts_, clock.dt);
+}
+
+void GrainContacts::add_energies(Energies &energies) const
+{
+  const ContactEnergies contact = contact_energies(state_.grains, contacts_);
+  energies.strain_grains += contact.strain;
+  energies.slip += contact.slip;
+  energies.damping += contact.dashpot;
+}
+
+void GrainContacts::visit_state(StateArchive &archive)
+{
+  std::vector<std::int64_t> pairs;
+  std::vector<double> values;
+  for (const Contact &c : contacts_.contacts)
+  {
+    pairs.push_back(c.first);
+    pairs.push_back(c.second);
+    for (const double v : {c.reference_gap, c.gap, c.shear_force, c.normal_force,
+                           c.slip_energy, c.dashpot_energy})
+      values.push_back(v);
+  }
+  archive.array("contacts/pairs", pairs);
+  archive.array("contacts/values", values);
+  archive.array("contacts/search_x", contacts_.search_x);
+  archive.array("contacts/search_y", contacts_.search_y);
+  archive.value("contacts/lost_energy", contacts_.lost_energy);
+  if (!archive.is_loading())
+    return;
+  contacts_.contacts.assign(pairs.size() / 2, {});
+  auto v = values.begin();
+  for (std::size_t k = 0; k < contacts_.contacts.size(); ++k)
+  {
+    Contact &c = contacts_.contacts[k];
+    c.first = static_cast<std::int32_t>(pairs[2 * k]);
+    c.second = static_cast<std::int32_t>(pairs[2 * k + 1]);
+    for (double *x : {&c.reference_gap, &c.gap, &c.shear_force, &c.normal_force,
+                      &c.slip_energy, &c.dashpot_energy})
+      *x = *v++;
+  }
+}
+
+void ContactSearch::run(const Stage, const Clock &)
+{
+  acted_ = needs_search(state_.grains, contacts_);
+  if (!acted_)
+    return;
+  search_contacts(state_.grains, state_.joints, contacts_);
+  if (on_search_)
+    on_search_();
+}
+
+GrainGravity::GrainGravity(GrainState &state,
+                           const double acceleration,
+                           const std::vector<double> &weight)
+    : state_(state)
+{
+  for (std::size_t i = 0; i < state.grains.size(); ++i)
+    force_.push_back(state.grains.mass[i] * acceleration *
+                     (weight.empty() ? 1. : weight[i]));
+}
+
+void GrainGravity::run(const Stage, const Clock &)
+{
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    state_.grains.force_y[i] -= force_[i];
+}
+
+void GrainGravity::add_energies(Energies &energies) const
+{
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    energies.boundary_work -= force_[i] * state_.grains.displacement_y[i];
+}
+
+void GrainLoads::run(const Stage, const Clock &)
+{
+  for (const auto &[i, force] : forces_)
+  {
+    state_.grains.force_x[i] += force.x;
+    state_.grains.force_y[i] += force.y;
+  }
+}
+
+void GrainLoads::add_energies(Energies &energies) const
+{
+  for (const auto &[i, force] : forces_)
+    energies.boundary_work += force.x * state_.grains.displacement_x[i] +
+                              force.y * state_.grains.displacement_y[i];
+}
+
+void GrainBase::run(const Stage, const Clock &)
+{
+  for (const Support &support : supports_)
+    if (std::isinf(support.stiffness))
+      state_.grains.force_y[support.grain] = 0.; // the support takes it
+    else
+      state_.grains.force_y[support.grain] -=
+          support.stiffness * state_.grains.displacement_y[support.grain];
+}
+
+void GrainBase::add_energies(Energies &energies) const
+{
+  for (const Support &support : supports_)
+    if (!std::isinf(support.stiffness))
+    {
+      const double u = state_.grains.displacement_y[support.grain];
+      energies.strain_continuum += 0.5 * support.stiffness * u * u;
+    }
+}
+} // namespace antiform::coupling

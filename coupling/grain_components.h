@@ -1,0 +1,170 @@
+#pragma once
+
+#include "coupling/simulation.h"
+#include "discrete/contacts.h"
+#include "discrete/grains.h"
+#include "discrete/integrate.h"
+#include "discrete/joints.h"
+
+#include <functional>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// Everything of the grains that forces act on, and the cracks found so far.
+struct GrainState
+{
+  discrete::Grains grains;
+  discrete::Joints joints;
+  std::vector<discrete::Crack> cracks;
+  std::size_t cracks_recorded = 0; ///< of them already written by the recorder
+  bool breaking = true;            ///< false: strengths are not looked at
+};
+
+/// Kick and drift of the grains; keeps the velocities before the kick at a sample.
+class GrainMotion : public Component
+{
+public:
+  explicit GrainMotion(GrainState &state)
+      : state_(state)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  /// Damping forces to add at the kick; set by the damping component.
+  const discrete::GrainDamping *damping = nullptr;
+
+private:
+  GrainState &state_;
+  discrete::GrainVelocities before_;
+};
+
+/// Flat joints that hold: vector kernel, first breaks, sum over the grains.
+class Bonds : public Component
+{
+public:
+  explicit Bonds(GrainState &state)
+      : state_(state)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  /// Called after the step in which the first bond breaks.
+  std::function<void()> on_first_crack;
+
+private:
+  GrainState &state_;
+};
+
+/// Friction, closing and further damage of joints with broken elements.
+class BrokenJoints : public Component
+{
+public:
+  explicit BrokenJoints(GrainState &state)
+      : state_(state)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+
+private:
+  GrainState &state_;
+};
+
+/// Linear contacts of grains that no joint holds.
+class GrainContacts : public Component
+{
+public:
+  GrainContacts(GrainState &state, discrete::Contacts &contacts)
+      : state_(state)
+      , contacts_(contacts)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+private:
+  GrainState &state_;
+  discrete::Contacts &contacts_;
+};
+
+/// Search for pairs that may touch, whenever a grain has used up half the margin.
+class ContactSearch : public Component
+{
+public:
+  ContactSearch(GrainState &state,
+                discrete::Contacts &contacts,
+                std::function<void()> on_search)
+      : state_(state)
+      , contacts_(contacts)
+      , on_search_(std::move(on_search))
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  bool acted() const override { return acted_; }
+
+private:
+  GrainState &state_;
+  discrete::Contacts &contacts_;
+  std::function<void()> on_search_;
+  bool acted_ = false;
+};
+
+/// Weight of the grains: m g with the real, energy-weighted mass.
+class GrainGravity : public Component
+{
+public:
+  /// \param weight w_D of each grain; empty: 1
+  GrainGravity(GrainState &state, double acceleration, const std::vector<double> &weight);
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+
+private:
+  GrainState &state_;
+  std::vector<double> force_; ///< downward [N]
+};
+
+/// Vertical forces that do not change (surface pressure on the outer chain of grains).
+class GrainLoads : public Component
+{
+public:
+  GrainLoads(GrainState &state, std::vector<std::pair<std::int32_t, Vec2>> forces)
+      : state_(state)
+      , forces_(std::move(forces))
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+
+private:
+  GrainState &state_;
+  std::vector<std::pair<std::int32_t, Vec2>> forces_;
+};
+
+/// Support of base grains, x free: a Winkler spring in y, or (stiffness infinite) no
+/// motion.
+class GrainBase : public Component
+{
+public:
+  struct Support
+  {
+    std::int32_t grain;
+    double stiffness; ///< [N/m]; infinity: held
+  };
+  GrainBase(GrainState &state, std::vector<Support> supports)
+      : state_(state)
+      , supports_(std::move(supports))
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+
+private:
+  GrainState &state_;
+  std::vector<Support> supports_;
+};
+} // namespace antiform::coupling

@@ -1,0 +1,120 @@
+#pragma once
+
+#include "coupling/bridging_domain.h"
+#include "coupling/grain_components.h"
+#include "coupling/mesh_components.h"
+#include "coupling/simulation.h"
+#include "discrete/integrate.h"
+#include "discrete/walls.h"
+
+#include <functional>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// The constraint of the bridging domain on the half-step velocities.
+class Bridging : public Component
+{
+public:
+  Bridging(BridgingDomain &domain, GrainState &grains, MeshState &mesh)
+      : domain_(domain)
+      , grains_(grains)
+      , mesh_(mesh)
+  {
+  }
+  void run(Stage, const Clock &) override
+  {
+    domain_.project(grains_.grains, mesh_.velocity);
+  }
+
+private:
+  BridgingDomain &domain_;
+  GrainState &grains_;
+  MeshState &mesh_;
+};
+
+/// Turns the forces into the constrained forces r = f - C^T L, which vanish at rest on
+/// grains and nodes that carry multipliers, and records the unbalanced ratio. Any part
+/// may be absent.
+class ConstrainedForces : public Component
+{
+public:
+  ConstrainedForces(GrainState *grains,
+                    MeshState *mesh,
+                    const BridgingDomain *domain,
+                    bool at_samples_only)
+      : grains_(grains)
+      , mesh_(mesh)
+      , domain_(domain)
+      , at_samples_only_(at_samples_only)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+
+  /// Mean free force over mean joint force of the last sample [-]; without grains the
+  /// norm of the mesh' free forces over that of its internal forces.
+  double unbalanced_ratio() const { return ratio_; }
+
+private:
+  void measure();
+
+  GrainState *grains_;
+  MeshState *mesh_;
+  const BridgingDomain *domain_;
+  bool at_samples_only_;
+  double ratio_ = 0.;
+};
+
+/// Local damping of grains and mesh, on the constrained forces.
+class LocalDamping : public Component
+{
+public:
+  LocalDamping(GrainState *grains, MeshState *mesh, double coefficient);
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  const discrete::GrainDamping *grain_forces() const { return &grain_damping_; }
+  const std::vector<double> *mesh_forces() const { return &mesh_force_; }
+
+private:
+  GrainState *grains_;
+  MeshState *mesh_;
+  double coefficient_;
+  discrete::GrainDamping grain_damping_;
+  std::vector<double> mesh_force_, mesh_energy_;
+};
+
+/// Rigid frictionless walls at the ends of the section: contact of the grains, prescribed
+/// dofs of the mesh, motion, reactions and work.
+class Walls : public Component
+{
+public:
+  /// \param speed inward speed of each wall at a time [m/s]
+  Walls(std::vector<discrete::Wall> &walls,
+        GrainState *grains,
+        MeshState *mesh,
+        const BridgingDomain *domain,
+        std::function<double(double)> speed);
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  /// Mean over the walls of the force that presses on grains of @p region, and on the
+  /// mesh [N].
+  double grain_reaction(int region) const;
+  double mesh_reaction() const;
+  /// Shortening of the section so far: inward displacement of all walls [m].
+  double closure() const;
+
+private:
+  void react(const Clock &clock);
+
+  std::vector<discrete::Wall> &walls_;
+  GrainState *grains_;
+  MeshState *mesh_;
+  const BridgingDomain *domain_;
+  std::function<double(double)> speed_;
+  double support_work_ = 0.; ///< of the prescribed mesh dofs [J]
+};
+} // namespace antiform::coupling

@@ -1,0 +1,246 @@
+#include "coupling/static_system.h"
+
+#include "discrete/errors.h"
+
+#include <Amesos.h>
+#include <Amesos_BaseSolver.h>
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_LinearProblem.h>
+#include <Epetra_Map.h>
+#include <Epetra_SerialComm.h>
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace antiform::coupling
+{
+namespace
+{
+/// Symmetric system in triplets, with fixed unknowns moved to the right-hand side.
+struct Triplets
+{
+  std::vector<Eigen::Triplet<double>> entries;
+  void add(const std::size_t row, const std::size_t column, const double value)
+  {
+    if (value != 0.)
+      entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  }
+};
+
+using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+std::vector<double> solve_direct(const Matrix &matrix, const Eigen::VectorXd &right)
+{
+  const int n = static_cast<int>(matrix.rows());
+  const Epetra_SerialComm comm;
+  const Epetra_Map map(n, 0, comm);
+  Epetra_CrsMatrix system(Copy, map, 0);
+  for (int row = 0; row < n; ++row)
+  {
+    const int begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
+    system.InsertGlobalValues(row, end - begin, matrix.valuePtr() + begin,
+                              matrix.innerIndexPtr() + begin);
+  }
+  system.FillComplete();
+  Epetra_Vector b(map), x(map);
+  for (int row = 0; row < n; ++row)
+    b[row] = right[row];
+  const Epetra_LinearProblem problem(&system, &x, &b);
+  const std::unique_ptr<Amesos_BaseSolver> solver(Amesos().Create("Amesos_Klu", problem));
+  if (solver->SymbolicFactorization() != 0 || solver->NumericFactorization() != 0 ||
+      solver->Solve() != 0)
+    throw NumericalError(
+        "static solve",
+        "the system matrix is singular: a grain or a part of the section "
+        "has no path to a support",
+        n, 0.);
+  return {&x[0], &x[0] + n};
+}
+} // namespace
+
+std::array<std::array<double, 6>, 3> joint_rows(const discrete::Joints &joints,
+                                                const std::size_t j)
+{
+  const double nx = joints.normal_x[j], ny = joints.normal_y[j];
+  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
+  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
+  return {{{-nx, -ny, 0., nx, ny, 0.},
+           {ny, -nx, -r1, -ny, nx, -r2},
+           {0., 0., -1., 0., 0., 1.}}};
+}
+
+std::array<double, 3> joint_stiffness(const discrete::Joints &joints, const std::size_t j)
+{
+  const discrete::FlatJoint &law = joints.group_of(j).law;
+  const double full = 2. * joints.half_length[j];
+  const double normal =
+      joints.stiffness[j] * full * (joints.weight.empty() ? 1. : joints.weight[j]);
+  const double n = law.n_elements;
+  const double moment = (law.element_moment ? 1. : 1. - 1. / (n * n)) / 12.;
+  return {normal, normal / law.stiffness_ratio, normal * full * full * moment};
+}
+
+StaticSystem::StaticSystem(const discrete::Grains &grains,
+                           const discrete::Joints &joints,
+                           const continuum::ElasticSolid *solid,
+                           const BridgingDomain *bridging)
+    : grains_(grains)
+    , joints_(joints)
+    , solid_(solid)
+    , bridging_(bridging)
+{
+  const std::size_t n =
+      mesh_begin() + (solid != nullptr ? solid->dof_handler().n_dofs() : 0);
+  spring_.assign(n, 0.);
+  force_.assign(n, 0.);
+}
+
+void StaticSystem::fix_grain(const std::size_t grain,
+                             const unsigned int component,
+                             const double value)
+{
+  fixed_[index(grain, component)] = value;
+}
+void StaticSystem::fix_mesh(const std::size_t dof, const double value)
+{
+  fixed_[mesh_begin() + dof] = value;
+}
+void StaticSystem::add_grain_spring(const std::size_t grain,
+                                    const unsigned int component,
+                                    const double stiffness)
+{
+  spring_[index(grain, component)] += stiffness;
+}
+void StaticSystem::add_grain_force(const std::size_t grain,
+                                   const unsigned int component,
+                                   const double force)
+{
+  force_[index(grain, component)] += force;
+}
+void StaticSystem::add_mesh_force(const std::size_t dof, const double force)
+{
+  force_[mesh_begin() + dof] += force;
+}
+
+StaticSolution StaticSystem::solve() const
+{
+  const std::size_t n_primal = force_.size();
+  const std::size_t n_rows = bridging_ != nullptr ? bridging_->grain_rows().n_rows() : 0;
+  const std::size_t n = n_primal + 2 * n_rows;
+
+  Triplets all;
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+  {
+    const auto rows = joint_rows(joints_, j);
+    const auto stiffness = joint_stiffness(joints_, j);
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b)
+      {
+        double value = 0.;
+        for (int r = 0; r < 3; ++r)
+          value += rows[r][a] * stiffness[r] * rows[r][b];
+        all.add(index(a < 3 ? joints_.first[j] : joints_.second[j], a % 3),
+                index(b < 3 ? joints_.first[j] : joints_.second[j], b % 3), value);
+      }
+  }
+  for (std::size_t i = 0; i < n_primal; ++i)
+    all.add(i, i, spring_[i]);
+  if (solid_ != nullptr)
+    for (auto row = 0u; row < solid_->dof_handler().n_dofs(); ++row)
+      for (auto it = solid_->stiffness().begin(row); it != solid_->stiffness().end(row);
+           ++it)
+        all.add(mesh_begin() + row, mesh_begin() + it->column(), it->value());
+
+  // Each constraint row is scaled to the mean diagonal of the stiffness.
+  double diagonal = 0.;
+  for (const auto &entry : all.entries)
+    if (entry.row() == entry.col())
+      diagonal += entry.value();
+  diagonal /= static_cast<double>(n_primal);
+  if (bridging_ != nullptr)
+  {
+    const std::vector<std::int32_t> &overlap = bridging_->overlap_grains();
+    const SparseRows &of_grains = bridging_->grain_rows(),
+                     &of_mesh = bridging_->mesh_rows();
+    for (std::size_t r = 0; r < n_rows; ++r)
+    {
+      double mass = 0.;
+      for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
+        mass += of_grains.value[k];
+      const double scale = diagonal / mass;
+      for (const unsigned int c : {0u, 1u})
+      {
+        const std::size_t row = n_primal + c * n_rows + r;
+        for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
+        {
+          const std::size_t column = index(overlap[of_grains.column[k]], c);
+          all.add(row, column, scale * of_grains.value[k]);
+          all.add(column, row, scale * of_grains.value[k]);
+        }
+        for (std::int32_t k = of_mesh.begin[r]; k < of_mesh.begin[r + 1]; ++k)
+        {
+          const std::size_t column =
+              mesh_begin() + bridging_->node_dofs()[of_mesh.column[k]][c];
+          all.add(row, column, scale * of_mesh.value[k]);
+          all.add(column, row, scale * of_mesh.value[k]);
+        }
+      }
+    }
+  }
+
+  // Fixed unknowns: identity rows, their columns to the right-hand side.
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n_primal; ++i)
+    right[static_cast<Eigen::Index>(i)] = force_[i];
+  std::vector<Eigen::Triplet<double>> free;
+  free.reserve(all.entries.size());
+  for (const auto &entry : all.entries)
+  {
+    const auto row = fixed_.find(entry.row()), column = fixed_.find(entry.col());
+    if (row != fixed_.end())
+      continue;
+    if (column != fixed_.end())
+      right[entry.row()] -= entry.value() * column->second;
+    else
+      free.push_back(entry);
+  }
+  for (const auto &[i, value] : fixed_)
+  {
+    free.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal);
+    right[static_cast<Eigen::Index>(i)] = diagonal * value;
+  }
+  Matrix matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+  matrix.setFromTriplets(free.begin(), free.end());
+  const std::vector<double> x = solve_direct(matrix, right);
+
+  const Eigen::Map<const Eigen::VectorXd> solution(x.data(),
+                                                   static_cast<Eigen::Index>(n));
+  const double scale = std::max(right.cwiseAbs().maxCoeff(),
+                                (matrix.cwiseAbs() * solution.cwiseAbs()).maxCoeff());
+  StaticSolution result;
+  result.residual =
+      scale > 0. ? (matrix * solution - right).cwiseAbs().maxCoeff() / scale : 0.;
+  if (!(result.residual < 1e-8))
+    throw NumericalError(
+        "static solve",
+        "the direct solution does not satisfy its equations: part of the "
+        "section has no path to a support",
+        result.residual, 1e-8);
+  for (std::size_t i = 0; i < grains_.size(); ++i)
+  {
+    result.ux.push_back(x[index(i, 0)]);
+    result.uy.push_back(x[index(i, 1)]);
+    result.rotation.push_back(x[index(i, 2)]);
+  }
+  if (solid_ != nullptr)
+  {
+    result.mesh = solid_->make_vector();
+    for (std::size_t d = 0; d < solid_->dof_handler().n_dofs(); ++d)
+      result.mesh(d) = x[mesh_begin() + d];
+    result.mesh.update_ghost_values();
+  }
+  return result;
+}
+} // namespace antiform::coupling

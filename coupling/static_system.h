@@ -1,0 +1,66 @@
+#pragma once
+
+#include "continuum/elastic_solid.h"
+#include "coupling/bridging_domain.h"
+#include "discrete/grains.h"
+#include "discrete/joints.h"
+
+#include <map>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// Displacements and rotations of grains, displacements of the mesh, and multipliers.
+struct StaticSolution
+{
+  std::vector<double> ux, uy, rotation; ///< per grain [m], [rad]
+  continuum::Vector mesh;               ///< [m]; empty without a mesh
+  double residual = 0.; ///< largest |K u + C^T L - f| over the largest |f| or |K u| [-]
+};
+
+/// Linear static equilibrium of intact bonded grains, mesh and bridging domain: the
+/// saddle-point system of the energies and the constraint, solved directly by Trilinos
+/// (Amesos, MUMPS). Each constraint row is scaled to the mean diagonal of the grains.
+/// Every part is optional; joint and mesh weights are those of the objects. One rank.
+class StaticSystem
+{
+public:
+  StaticSystem(const discrete::Grains &grains,
+               const discrete::Joints &joints,
+               const continuum::ElasticSolid *solid,
+               const BridgingDomain *bridging);
+
+  /// Prescribe a displacement (component 0, 1) or rotation (2) of a grain, or a mesh dof.
+  void fix_grain(std::size_t grain, unsigned int component, double value);
+  void fix_mesh(std::size_t dof, double value);
+  /// Spring to the ground on a grain [N/m].
+  void add_grain_spring(std::size_t grain, unsigned int component, double stiffness);
+  /// External force on a grain [N] (component 2: torque [N m]) or on a mesh dof [N].
+  void add_grain_force(std::size_t grain, unsigned int component, double force);
+  void add_mesh_force(std::size_t dof, double force);
+
+  /// Throws NumericalError when the factorisation fails or the residual exceeds 1e-8.
+  StaticSolution solve() const;
+
+private:
+  std::size_t index(const std::size_t grain, const unsigned int component) const
+  {
+    return 3 * grain + component;
+  }
+  std::size_t mesh_begin() const { return 3 * grains_.size(); }
+
+  const discrete::Grains &grains_;
+  const discrete::Joints &joints_;
+  const continuum::ElasticSolid *solid_;
+  const BridgingDomain *bridging_;
+  std::map<std::size_t, double> fixed_;
+  std::vector<double> spring_, force_;
+};
+
+/// The linearised kinematics of joint @p j at rest: rows gap, shear, rotation over the
+/// dofs (x, y, rotation) of its first and second grain.
+std::array<std::array<double, 6>, 3> joint_rows(const discrete::Joints &joints,
+                                                std::size_t j);
+/// Stiffness of the three rows, weighted [N/m], [N/m], [N m].
+std::array<double, 3> joint_stiffness(const discrete::Joints &joints, std::size_t j);
+} // namespace antiform::coupling
