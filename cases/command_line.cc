@@ -1,0 +1,115 @@
+#include "cases/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace antiform::cases
+{
+namespace
+{
+void add_deck(CLI::App &command, RunOptions &run)
+{
+  command.add_option("DECK", run.deck, "parameter file (.prm)")->required();
+  command
+      .add_option("--set", run.overrides, "\"Section/Entry=value\": overrides the deck")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("ENTRY=VALUE");
+}
+
+void add_run(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand("run", "run a deck");
+  add_deck(command, line.run);
+  command.add_option("-o,--output", line.run.output, "output directory (DECK-output)")
+      ->type_name("DIR");
+  command
+      .add_option("--threads", line.run.threads, "threads of each rank (OMP_NUM_THREADS)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command.add_flag("--resume", line.run.resume,
+                   "go on from state.h5 in the output directory");
+  command
+      .add_option("--time-limit", line.run.time_limit,
+                  "stop with a checkpoint after so many seconds (exit status 3)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  command.footer(
+      "Example:\n  antiform run cases/burial-depth/quick.prm -o out "
+      "--set \"Matrix/Burial depth ratio=5\"\n  mpirun -np 2 antiform run "
+      "cases/burial-depth/anticline.prm --threads 1 --time-limit 3600\nExit status: 0 "
+      "done, "
+      "1 error of the deck, an option or a file, 2 error of the physics,\n3 interrupted: "
+      "'antiform run DECK -o DIR --resume' goes on.\n");
+  command.callback([&line] { line.command = CommandLine::Command::run; });
+}
+
+void add_check(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "check",
+      "what a deck makes: scene, effects and why, sizes, predicted time and memory");
+  add_deck(command, line.run);
+  command.add_flag("--json", line.json, "for programs");
+  command.footer("Example:\n  antiform check cases/burial-depth/anticline.prm "
+                 "--set \"Layer/Grains across=20\"");
+  command.callback([&line] { line.command = CommandLine::Command::check; });
+}
+
+void add_parameters(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command =
+      *app.add_subcommand("parameters", "every parameter: meaning, unit, default, range");
+  command.add_option("NAME", line.name, "only those with NAME in their path");
+  command.add_flag("--markdown", line.markdown, "all of them, as docs/parameters.md");
+  command.footer("Example:\n  antiform parameters overlap");
+  command.callback([&line] { line.command = CommandLine::Command::parameters; });
+}
+
+const std::vector<std::string> planned = {"study", "compare", "calibrate", "theory",
+                                          "report"};
+} // namespace
+
+CommandLine parse_command_line(const std::vector<std::string> &arguments)
+{
+  if (!arguments.empty() &&
+      std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
+    throw InputError({"antiform " + arguments.front() +
+                      ": does not exist yet in this version. What exists: run, check, "
+                      "parameters."});
+
+  CommandLine line;
+  CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
+               "antiform");
+  app.require_subcommand(1);
+  app.footer("Example:\n  antiform run cases/burial-depth/quick.prm\n"
+             "'antiform COMMAND --help' says more.");
+  add_run(app, line);
+  add_check(app, line);
+  add_parameters(app, line);
+
+  try
+  {
+    // CLI11 takes the arguments from the back.
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    app.parse(reversed);
+  }
+  catch (const CLI::ParseError &error)
+  {
+    std::ostringstream out, err;
+    if (app.exit(error, out, err) != 0)
+    {
+      std::string text = err.str();
+      while (!text.empty() && text.back() == '\n')
+        text.pop_back();
+      throw InputError({"command line: " + text});
+    }
+    line.command = CommandLine::Command::help;
+    line.help_text = out.str();
+  }
+  return line;
+}
+} // namespace antiform::cases

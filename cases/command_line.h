@@ -1,0 +1,31 @@
+#pragma once
+
+#include "cases/program.h"
+
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// The command line, understood.
+struct CommandLine
+{
+  enum class Command
+  {
+    help, ///< print help_text
+    run,
+    check,
+    parameters
+  };
+  Command command = Command::help;
+  std::string help_text;
+  RunOptions run;        ///< deck and overrides of `check` too
+  bool json = false;     ///< check --json
+  bool markdown = false; ///< parameters --markdown
+  std::string name;      ///< parameters NAME
+};
+
+/// Throws InputError for what it cannot accept, sub-commands that do not exist yet
+/// included. \param arguments without the program's name
+CommandLine parse_command_line(const std::vector<std::string> &arguments);
+} // namespace antiform::cases

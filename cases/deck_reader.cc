@@ -1,0 +1,251 @@
+#include "cases/deck_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace antiform::cases
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+// Includes nest, and so do the functions that read them; a cycle is refused.
+// NOLINTBEGIN(misc-no-recursion)
+
+/// Reads one file after the other, down the includes; collects problems and goes on.
+class Scanner
+{
+public:
+  Scanner(DeckText &deck, std::vector<std::string> &problems)
+      : deck_(deck)
+      , problems_(problems)
+  {
+  }
+
+  void read(const std::string &file, const std::string &from)
+  {
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(file, error);
+    if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
+    {
+      problems_.push_back(from + ": '" + file +
+                          "' includes itself. Remove this include.");
+      return;
+    }
+    std::ifstream input;
+    if (!fs::is_directory(file, error))
+      input.open(file);
+    if (!input.is_open())
+    {
+      problems_.push_back(missing(file, from));
+      return;
+    }
+    open_files_.push_back(canonical);
+    lines(input, file);
+    open_files_.pop_back();
+  }
+
+private:
+  static std::string missing(const std::string &file, const std::string &from)
+  {
+    if (from.empty())
+      return file +
+             ": cannot open this deck. Give the path of a .prm file that exists and "
+             "can be read.";
+    const fs::path folder = fs::absolute(fs::path(file)).parent_path();
+    return from + ": cannot open the include '" + fs::path(file).filename().string() +
+           "', looked for in " + folder.lexically_normal().string() +
+           ". Give a path relative to the deck that includes it.";
+  }
+
+  void lines(std::istream &input, const std::string &file)
+  {
+    const std::size_t depth_before = open_sections_.size();
+    std::string line, whole;
+    int number = 0, first = 1;
+    while (std::getline(input, line))
+    {
+      ++number;
+      line = line.substr(0, line.find('#'));
+      while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back())))
+        line.pop_back();
+      const bool continued = !line.empty() && line.back() == '\\';
+      if (continued)
+        line.pop_back();
+      whole += " " + line;
+      if (continued)
+        continue;
+      statement(tidy(whole), file, file + ":" + std::to_string(first), depth_before);
+      whole.clear();
+      first = number + 1;
+    }
+    if (!whole.empty())
+      problems_.push_back(file + ":" + std::to_string(number) +
+                          ": the file ends in a line that is to be continued ('\\'). "
+                          "Remove the '\\'.");
+    while (open_sections_.size() > depth_before)
+    {
+      problems_.push_back(open_sections_.back().place + ": 'subsection " +
+                          open_sections_.back().value +
+                          "' is not closed. Add 'end' after its last entry.");
+      open_sections_.pop_back();
+    }
+  }
+
+  void statement(const std::string &line,
+                 const std::string &file,
+                 const std::string &place,
+                 const std::size_t depth_before)
+  {
+    if (line.empty())
+      return;
+    const std::size_t blank = line.find(' ');
+    std::string keyword = line.substr(0, blank);
+    const std::string rest = blank == std::string::npos ? "" : line.substr(blank + 1);
+    std::transform(keyword.begin(), keyword.end(), keyword.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+
+    if (keyword == "set" && rest.find('=') != std::string::npos)
+    {
+      const std::size_t equals = rest.find('=');
+      deck_.entries.push_back({prefix() + tidy(rest.substr(0, equals)),
+                               tidy(rest.substr(equals + 1)), place});
+    }
+    else if (keyword == "subsection" && !rest.empty())
+    {
+      deck_.sections.push_back({prefix() + rest, "", place});
+      open_sections_.push_back({prefix() + rest, rest, place});
+    }
+    else if (keyword == "end" && rest.empty())
+      end(place, depth_before);
+    else if (keyword == "include" && !rest.empty())
+    {
+      const fs::path target(rest);
+      read((target.is_absolute() ? target : fs::path(file).parent_path() / target)
+               .string(),
+           place);
+    }
+    else
+      problems_.push_back(place + ": cannot read '" + line +
+                          "'. A line is 'set ENTRY = VALUE', 'subsection NAME', 'end', "
+                          "'include FILE' or a comment after '#'.");
+  }
+
+  void end(const std::string &place, const std::size_t depth_before)
+  {
+    if (open_sections_.size() > depth_before)
+      open_sections_.pop_back();
+    else
+      problems_.push_back(place +
+                          ": 'end' without a subsection of this file to close. "
+                          "Remove it, or add the 'subsection NAME' that it ends.");
+  }
+
+  std::string prefix() const
+  {
+    return open_sections_.empty() ? "" : open_sections_.back().path + "/";
+  }
+
+  DeckText &deck_;
+  std::vector<std::string> &problems_;
+  std::vector<DeckLine> open_sections_; ///< path, own name, place
+  std::vector<fs::path> open_files_;
+};
+// NOLINTEND(misc-no-recursion)
+
+std::string lower_case(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Levenshtein: insertions, deletions and replacements from one to the other.
+std::size_t edit_distance(const std::string &a, const std::string &b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i)
+  {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j)
+    {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+} // namespace
+
+DeckText scan_deck(const std::string &file, std::vector<std::string> &problems)
+{
+  DeckText deck;
+  Scanner(deck, problems).read(file, "");
+  return deck;
+}
+
+void scan_override(const std::string &text,
+                   DeckText &deck,
+                   std::vector<std::string> &problems)
+{
+  const std::size_t equals = text.find('=');
+  const std::string path = tidy(text.substr(0, equals));
+  if (equals == std::string::npos || path.empty())
+  {
+    problems.push_back("--set \"" + text +
+                       "\": no entry or no '='. Write --set \"Section/Entry=value\".");
+    return;
+  }
+  // '#' begins a comment in deck.prm, so the value would not survive being written there.
+  if (text.find_first_of("#\n\\") != std::string::npos)
+  {
+    problems.push_back(
+        "--set \"" + text +
+        "\": '#', '\\' and line breaks cannot stand in a deck. Leave them out.");
+    return;
+  }
+  deck.entries.push_back({path, tidy(text.substr(equals + 1)), "--set"});
+}
+
+std::string nearest_name(const std::string &name,
+                         const std::vector<std::string> &candidates)
+{
+  std::string best;
+  // A third of the letters wrong is still a slip; more is another word.
+  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string &candidate : candidates)
+  {
+    const std::size_t distance = edit_distance(lower_case(name), lower_case(candidate));
+    if (distance < least)
+    {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string tidy(const std::string &text)
+{
+  std::istringstream words(text);
+  std::string word, result;
+  while (words >> word)
+    result += (result.empty() ? "" : " ") + word;
+  return result;
+}
+
+std::string join(const std::vector<std::string> &words, const std::string &separator)
+{
+  std::string result;
+  for (const std::string &word : words)
+    result += (result.empty() ? "" : separator) + word;
+  return result;
+}
+} // namespace antiform::cases

@@ -1,0 +1,80 @@
+#include "cases/effects.h"
+
+#include <stdexcept>
+
+namespace antiform::cases
+{
+namespace
+{
+using State = Effect::State;
+
+Effect choose(const std::string &name,
+              const bool present,
+              const std::string &why,
+              const std::string &why_not)
+{
+  return {name, present ? State::present : State::absent, present ? why : why_not};
+}
+
+/// Effects that wait for the first broken bond.
+Effect
+after_breakage(const std::string &name, const bool possible, const std::string &what)
+{
+  return {name, possible ? State::when_needed : State::absent,
+          possible ? what + " from the first broken bond on"
+                   : "no bond of this scene can break"};
+}
+} // namespace
+
+std::vector<Effect> list_effects(const Parameters &p)
+{
+  const bool grains = p.layer.representation == "grains";
+  const bool matrix = p.has("matrix");
+  const bool mesh = !grains || (matrix && p.matrix.representation == "continuum");
+  const bool breakable =
+      grains && (p.layer.joint.breakable || (matrix && p.matrix.breakable));
+  const bool slips = grains && matrix && p.matrix.interface == "frictionless";
+
+  std::vector<Effect> list;
+  list.push_back(choose("bonds", grains, "the layer is grains", "nothing is grains"));
+  list.push_back(
+      after_breakage("friction", breakable, "broken elements close and slide"));
+  if (slips)
+  {
+    list.push_back({"contacts", State::present, "layer and matrix may slide and part"});
+    list.push_back({"search", State::present, "grains slide along the interface"});
+  }
+  else
+  {
+    list.push_back(after_breakage("contacts", breakable, "loose grains meet"));
+    list.push_back(after_breakage("search", breakable, "loose grains move"));
+  }
+  list.push_back(choose("mesh", mesh, "the matrix is continuum",
+                        "no part of the section is continuum"));
+  list.push_back(choose("bridging domain", p.is_bridged() && p.bridging.constraint,
+                        "grains and mesh overlap",
+                        p.is_bridged() ? "'Bridging domain / Constraint' is false"
+                                       : "grains and mesh do not meet"));
+  list.push_back(choose("foundation", p.has("foundation"), "listed in Components",
+                        "not listed in Components"));
+  list.push_back(choose(
+      "base",
+      grains && matrix && p.matrix.representation == "grains" && !p.has("foundation"),
+      "base grains rest on a roller", "the base is held by the mesh or the foundation"));
+  for (const std::string name : {"gravity", "surface pressure", "walls", "damping"})
+    list.push_back(
+        choose(name, p.has(name), "listed in Components", "not listed in Components"));
+  list.push_back(choose("density scaling", p.run.driver == "quasi-static",
+                        "quasi-static driver: inertia is free to choose",
+                        "only the quasi-static driver may scale densities"));
+  return list;
+}
+
+std::string reason_for(const Parameters &parameters, const std::string &effect)
+{
+  for (const Effect &one : list_effects(parameters))
+    if (one.name == effect)
+      return one.reason;
+  throw std::logic_error("no effect is called " + effect);
+}
+} // namespace antiform::cases

@@ -1,0 +1,359 @@
+#include "cases/grain_section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace antiform::cases
+{
+using namespace discrete;
+
+namespace
+{
+PackingParameters packing_parameters(const Parameters &p, const int seed)
+{
+  PackingParameters packing;
+  packing.mean_diameter = p.grain_diameter();
+  packing.radius_ratio = p.layer.radius_ratio;
+  packing.installation_gap_ratio = p.layer.installation_gap;
+  packing.seed = static_cast<std::uint64_t>(seed);
+  return packing;
+}
+
+FlatJoint matrix_law(const Parameters &p)
+{
+  FlatJoint law;
+  law.stiffness_ratio = p.layer.joint.stiffness_ratio;
+  law.n_elements = p.layer.joint.n_elements;
+  law.radius_multiplier = p.layer.joint.radius_multiplier;
+  law.element_moment = p.layer.joint.element_moment;
+  law.tensile_strength = p.matrix.tensile_strength;
+  law.cohesion = p.matrix.cohesion;
+  law.tan_friction = p.matrix.tan_friction;
+  law.residual_friction = p.matrix.residual_friction;
+  law.breakable = p.matrix.breakable;
+  return law;
+}
+
+/// Disks of layer and matrix before they get their numbers.
+struct Placed
+{
+  Disk disk;
+  int region;
+};
+
+/// Copies of the tile in the matrix. A copy whose centre lies in the layer, or that would
+/// cover a layer grain by more than 0.3 of the sum of radii, is left out: the cut is by
+/// centres, which keeps the density at the rims.
+std::vector<Placed> place_matrix(const MatrixRock &rock,
+                                 const SectionGeometry &geometry,
+                                 const std::vector<Disk> &layer,
+                                 const std::function<bool(const Vec2 &)> &holds)
+{
+  const double bin = 2. * geometry.diameter();
+  std::vector<std::vector<std::size_t>> bins(
+      static_cast<std::size_t>(geometry.length() / bin) + 2);
+  const auto bin_of = [&](const double x)
+  {
+    return static_cast<std::size_t>(std::clamp((x - geometry.x_min()) / bin, 0.,
+                                               static_cast<double>(bins.size() - 1)));
+  };
+  for (std::size_t i = 0; i < layer.size(); ++i)
+    bins[bin_of(layer[i].centre.x)].push_back(i);
+  const auto covers_layer = [&](const Disk &disk)
+  {
+    const std::size_t middle = bin_of(disk.centre.x);
+    for (std::size_t b = middle > 0 ? middle - 1 : 0;
+         b <= std::min(middle + 1, bins.size() - 1); ++b)
+      for (const std::size_t i : bins[b])
+        if (norm(layer[i].centre - disk.centre) < 0.7 * (layer[i].radius + disk.radius))
+          return true;
+    return false;
+  };
+
+  std::vector<Placed> placed;
+  const Vec2 period = rock.tile.size;
+  const auto first_x = static_cast<int>(std::floor(geometry.x_min() / period.x));
+  const auto last_x = static_cast<int>(std::floor(geometry.x_max() / period.x));
+  const auto first_y = static_cast<int>(std::floor(geometry.base() / period.y));
+  const auto last_y = static_cast<int>(std::floor(geometry.surface() / period.y));
+  for (int ix = first_x; ix <= last_x; ++ix)
+    for (int iy = first_y; iy <= last_y; ++iy)
+      for (const Disk &disk : rock.tile.disks)
+      {
+        const Vec2 c = disk.centre + Vec2{ix * period.x, iy * period.y};
+        if (c.x < geometry.x_min() || c.x > geometry.x_max() || c.y < geometry.base() ||
+            c.y > geometry.surface())
+          continue;
+        if (c.y > geometry.layer_bottom(c.x) && c.y < geometry.layer_top(c.x))
+          continue;
+        const Disk copy{c, disk.radius};
+        if (holds(c) && !covers_layer(copy))
+          placed.push_back({copy, matrix_region});
+      }
+  return placed;
+}
+
+/// Keep what is connected with the first grain of the layer through the pairs.
+std::vector<char>
+connected_grains(const std::size_t n,
+                 const std::vector<std::pair<std::int32_t, std::int32_t>> &pairs,
+                 const Grains &grains)
+{
+  std::vector<std::int32_t> parent(n);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::int32_t i)
+  {
+    while (parent[i] != i)
+      i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto &[i, j] : pairs)
+    parent[root(i)] = root(j);
+  std::int32_t layer = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (grains.region[i] == layer_region)
+    {
+      layer = static_cast<std::int32_t>(i);
+      break;
+    }
+  std::vector<char> keep(n);
+  for (std::size_t i = 0; i < n; ++i)
+    keep[i] = root(static_cast<std::int32_t>(i)) == root(layer) ? 1 : 0;
+  return keep;
+}
+
+using Pairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+struct AllPairs
+{
+  Pairs layer, interface, matrix;
+};
+AllPairs find_pairs(const Grains &grains, const double layer_gap, const double matrix_gap)
+{
+  return {pairs_within(grains, layer_gap, layer_region, layer_region),
+          pairs_within(grains, matrix_gap, layer_region, matrix_region),
+          pairs_within(grains, matrix_gap, matrix_region, matrix_region)};
+}
+
+Grains number_grains(std::vector<Placed> placed, const Parameters &p)
+{
+  // By x: neighbours in space are neighbours in memory.
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const Placed &a, const Placed &b)
+                   { return a.disk.centre.x < b.disk.centre.x; });
+  Grains grains;
+  for (const Placed &one : placed)
+    grains.add(one.disk.centre, one.disk.radius,
+               one.region == layer_region ? p.layer.grain_density
+                                          : p.matrix.grain_density,
+               one.region);
+  return grains;
+}
+
+void bond(GrainSection &section, const Parameters &p, const AllPairs &pairs)
+{
+  const Grains &grains = section.state.grains;
+  Joints &joints = section.state.joints;
+  const auto add = [&](const Pairs &list)
+  {
+    for (const auto &[i, j] : list)
+      joints.add(grains, i, j, section.modulus[grains.region[i]],
+                 section.modulus[grains.region[j]]);
+  };
+  joints.begin_group(p.layer.joint, layer_region, "layer");
+  add(pairs.layer);
+  if (section.matrix)
+  {
+    if (p.matrix.interface == "cemented")
+    {
+      joints.begin_group(section.matrix->law, matrix_region, "interface");
+      add(pairs.interface);
+    }
+    joints.begin_group(section.matrix->law, matrix_region, "matrix");
+    add(pairs.matrix);
+  }
+  joints.finish(grains.size());
+}
+} // namespace
+
+MatrixRock make_matrix_rock(const Parameters &p)
+{
+  MatrixRock rock;
+  const PackingParameters packing = packing_parameters(p, p.layer.seed + 1000);
+  const double side = p.matrix.tile_size * p.grain_diameter();
+  rock.tile = pack_periodic({side, side}, packing);
+  rock.installation_gap = p.layer.installation_gap * 0.5 * p.grain_diameter();
+  try
+  {
+    rock.law = match_moduli(rock.tile, rock.installation_gap, matrix_law(p),
+                            p.matrix_modulus(), p.matrix.poisson_ratio);
+  }
+  catch (const std::invalid_argument &error)
+  {
+    throw InputError({"'Matrix / Poisson ratio' is " +
+                      std::to_string(p.matrix.poisson_ratio) + ": " + error.what()});
+  }
+  rock.response = homogenise(rock.tile, rock.installation_gap, rock.law);
+  rock.bulk_density = p.matrix.grain_density * rock.response.density_factor;
+  return rock;
+}
+
+GrainSection make_grains(const Parameters &p,
+                         const SectionGeometry &geometry,
+                         const std::function<bool(const Vec2 &)> &holds,
+                         const Progress &progress)
+{
+  GrainSection section;
+  section.modulus.push_back(p.layer.joint.effective_modulus);
+  std::vector<Placed> placed;
+  progress("packing the layer");
+  const Packing layer =
+      pack_polygon(geometry.layer_outline(), packing_parameters(p, p.layer.seed));
+  section.layer_quality = layer.quality;
+  for (const Disk &disk : layer.disks)
+    placed.push_back({disk, layer_region});
+  const double layer_gap = p.layer.installation_gap * 0.5 * p.grain_diameter();
+  section.installation_gap = layer_gap;
+  double matrix_gap = 0.;
+  if (geometry.has_matrix())
+  {
+    progress("packing the matrix");
+    section.matrix = make_matrix_rock(p);
+    section.modulus.push_back(section.matrix->law.effective_modulus);
+    matrix_gap = section.matrix->installation_gap;
+    for (const Placed &one : place_matrix(*section.matrix, geometry, layer.disks, holds))
+      placed.push_back(one);
+  }
+
+  Grains all = number_grains(placed, p);
+  AllPairs pairs = find_pairs(all, layer_gap, matrix_gap);
+  Pairs any = pairs.layer;
+  any.insert(any.end(), pairs.interface.begin(), pairs.interface.end());
+  any.insert(any.end(), pairs.matrix.begin(), pairs.matrix.end());
+  const std::vector<char> keep = connected_grains(all.size(), any, all);
+  section.removed_grains =
+      static_cast<std::size_t>(std::count(keep.begin(), keep.end(), char(0)));
+  if (section.removed_grains > 0)
+  {
+    std::vector<Placed> kept;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (keep[i] != 0)
+        kept.push_back({{all.reference(i), all.radius[i]}, all.region[i]});
+    all = number_grains(kept, p);
+    pairs = find_pairs(all, layer_gap, matrix_gap);
+  }
+  section.state.grains = std::move(all);
+  progress("bonding");
+  bond(section, p, pairs);
+  return section;
+}
+
+std::vector<Wall> make_walls(const GrainSection &section, const SectionGeometry &geometry)
+{
+  std::vector<Wall> walls(2);
+  walls[0].point = {geometry.x_min(), 0.};
+  walls[0].normal = {1., 0.};
+  walls[1].point = {geometry.x_max(), 0.};
+  walls[1].normal = {-1., 0.};
+  // The first row of grains, cut or not, stands at the wall stress-free.
+  const double d = geometry.diameter();
+  for (Wall &wall : walls)
+    install_wall_contacts(section.state.grains, wall, d, 0.3 * d, section.modulus);
+  return walls;
+}
+
+Contacts
+make_contacts(const Parameters &p, const GrainSection &section, const bool interface_only)
+{
+  Contacts contacts;
+  contacts.margin = 0.25 * p.grain_diameter();
+  const auto law = [&](const double modulus, const double ratio, const double friction)
+  {
+    LinearContact contact;
+    contact.effective_modulus = modulus;
+    contact.stiffness_ratio = ratio;
+    contact.friction = friction;
+    return contact;
+  };
+  const FlatJoint &layer = p.layer.joint;
+  if (!interface_only)
+    contacts.groups.push_back(
+        {layer_region, layer_region,
+         law(layer.effective_modulus, layer.stiffness_ratio, layer.residual_friction)});
+  if (section.matrix)
+  {
+    const double two_in_series =
+        2. / (1. / section.modulus[layer_region] + 1. / section.modulus[matrix_region]);
+    const bool frictionless = p.matrix.interface == "frictionless";
+    contacts.groups.push_back({layer_region, matrix_region,
+                               law(two_in_series, section.matrix->law.stiffness_ratio,
+                                   frictionless ? 0. : p.matrix.residual_friction)});
+    if (frictionless)
+      for (const auto &[i, j] :
+           pairs_within(section.state.grains, section.matrix->installation_gap,
+                        layer_region, matrix_region))
+      {
+        const Grains &g = section.state.grains;
+        contacts.installed.push_back(
+            {i, j, norm(g.reference(j) - g.reference(i)) - g.radius[i] - g.radius[j]});
+      }
+  }
+  return contacts;
+}
+
+std::vector<std::pair<std::int32_t, double>> base_grains(const GrainSection &section,
+                                                         const SectionGeometry &geometry)
+{
+  const Grains &grains = section.state.grains;
+  std::vector<std::pair<std::int32_t, double>> base;
+  double width = 0.;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (grains.reference_y[i] - geometry.base() <= geometry.diameter())
+    {
+      base.emplace_back(static_cast<std::int32_t>(i), 2. * grains.radius[i]);
+      width += 2. * grains.radius[i];
+    }
+  for (auto &[i, share] : base)
+    share *= geometry.length() / width;
+  return base;
+}
+
+std::vector<std::pair<std::int32_t, double>>
+surface_grains(const GrainSection &section, const SectionGeometry &geometry)
+{
+  const Grains &grains = section.state.grains;
+  const auto n = static_cast<std::size_t>(20. * geometry.length() / geometry.diameter());
+  const double width = geometry.length() / static_cast<double>(n);
+  std::vector<std::int32_t> highest(n, -1);
+  std::vector<double> height(n, -1e300);
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const double x = grains.reference_x[i], r = grains.radius[i];
+    const auto begin = static_cast<long>((x - r - geometry.x_min()) / width);
+    const auto end = static_cast<long>((x + r - geometry.x_min()) / width);
+    for (long k = std::max(0l, begin); k <= std::min(long(n) - 1, end); ++k)
+    {
+      const double s = geometry.x_min() + (static_cast<double>(k) + 0.5) * width - x;
+      if (std::abs(s) >= r)
+        continue;
+      const double top = grains.reference_y[i] + std::sqrt(r * r - s * s);
+      if (top > height[k])
+      {
+        height[k] = top;
+        highest[k] = static_cast<std::int32_t>(i);
+      }
+    }
+  }
+  std::vector<double> share(grains.size(), 0.);
+  for (std::size_t k = 0; k < n; ++k)
+    if (highest[k] >= 0)
+      share[highest[k]] += width;
+  std::vector<std::pair<std::int32_t, double>> chain;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (share[i] > 0.)
+      chain.emplace_back(static_cast<std::int32_t>(i), share[i]);
+  return chain;
+}
+} // namespace antiform::cases

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "cases/geometry.h"
+#include "cases/parameters.h"
+#include "coupling/grain_components.h"
+#include "discrete/contacts.h"
+#include "discrete/homogenise.h"
+#include "discrete/packing.h"
+#include "discrete/walls.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// Regions of grains, as Grains::region has them.
+enum Region
+{
+  layer_region = 0,
+  matrix_region = 1
+};
+
+/// The matrix as grains: a periodic tile with the wanted moduli.
+struct MatrixRock
+{
+  discrete::PeriodicTile tile;
+  discrete::TileResponse response;
+  discrete::FlatJoint law;
+  double installation_gap = 0.; ///< [m]
+  double bulk_density = 0.;     ///< [kg/m^3]
+};
+
+/// All grains of a scene, bonded where they stand.
+struct GrainSection
+{
+  coupling::GrainState state;
+  discrete::PackingQuality layer_quality;
+  std::optional<MatrixRock> matrix;
+  std::vector<double> modulus;    ///< E* by region [Pa]
+  double installation_gap = 0.;   ///< [m]
+  std::size_t removed_grains = 0; ///< matrix grains without a path to the rest
+};
+
+using Progress = std::function<void(const std::string &)>;
+
+/// Pack the tile and find the law that gives it the deck's moduli. Throws InputError when
+/// the Poisson ratio is out of a disk packing's reach.
+MatrixRock make_matrix_rock(const Parameters &parameters);
+
+/// Pack, place and bond the grains. Matrix grains are the copies of the tile whose
+/// centres satisfy @p holds and lie in the matrix; those without a path of joints to the
+/// layer are left out.
+GrainSection make_grains(const Parameters &parameters,
+                         const SectionGeometry &geometry,
+                         const std::function<bool(const Vec2 &)> &holds,
+                         const Progress &progress);
+
+/// End walls at both sides, stress-free where grains stand.
+std::vector<discrete::Wall> make_walls(const GrainSection &section,
+                                       const SectionGeometry &geometry);
+
+/// Laws and margin of linear contacts: @p interface_only before anything has broken.
+discrete::Contacts make_contacts(const Parameters &parameters,
+                                 const GrainSection &section,
+                                 bool interface_only);
+
+/// Grains within one diameter of the base, with their share of its width [m].
+std::vector<std::pair<std::int32_t, double>> base_grains(const GrainSection &section,
+                                                         const SectionGeometry &geometry);
+
+/// Grains that see the sky, with their share of its width [m]; the shares add up to the
+/// section's length.
+std::vector<std::pair<std::int32_t, double>>
+surface_grains(const GrainSection &section, const SectionGeometry &geometry);
+} // namespace antiform::cases

@@ -1,0 +1,118 @@
+#include "cases/command_line.h"
+#include "cases/interrupt.h"
+#include "cases/output_directory.h"
+#include "discrete/errors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <exception>
+#include <functional>
+#include <iostream>
+
+namespace
+{
+using namespace antiform::cases;
+namespace ranks = dealii::Utilities::MPI;
+
+/// Do @p work on every rank, or fail with an InputError on every rank: a deck that one
+/// machine cannot read must not leave the other ranks waiting.
+void together(const MPI_Comm communicator, const std::function<void()> &work)
+{
+  std::vector<std::string> problems;
+  try
+  {
+    work();
+  }
+  catch (const InputError &error)
+  {
+    problems = error.problems();
+  }
+  const unsigned int n_ranks = ranks::n_mpi_processes(communicator);
+  const unsigned int rank = ranks::this_mpi_process(communicator);
+  const unsigned int first_failed =
+      ranks::min(problems.empty() ? n_ranks : rank, communicator);
+  if (first_failed < n_ranks)
+    throw InputError(ranks::broadcast(communicator, problems, first_failed));
+}
+
+int run_deck(RunOptions options, const MPI_Comm communicator)
+{
+  const bool is_first = ranks::this_mpi_process(communicator) == 0;
+  Parameters parameters;
+  together(communicator,
+           [&] { parameters = read_deck(options.deck, options.overrides); });
+  together(communicator,
+           [&]
+           {
+             if (!is_first)
+               return;
+             const std::string message = prepare_output_directory(options);
+             if (!message.empty())
+               std::cout << message << std::endl;
+           });
+  options.output = ranks::broadcast(communicator, options.output, 0);
+  options.resume = ranks::broadcast(communicator, options.resume, 0);
+  catch_interrupts();
+  return run(parameters, options, communicator);
+}
+
+int execute(const CommandLine &line, const MPI_Comm communicator)
+{
+  if (line.command == CommandLine::Command::run)
+    return run_deck(line.run, communicator);
+
+  int status = 0;
+  together(communicator,
+           [&]
+           {
+             if (ranks::this_mpi_process(communicator) != 0)
+               return;
+             if (line.command == CommandLine::Command::help)
+               std::cout << line.help_text;
+             else if (line.command == CommandLine::Command::check)
+               status = check(read_deck(line.run.deck, line.run.overrides), line.json,
+                              std::cout);
+             else
+               std::cout << (line.markdown ? parameters_markdown()
+                                           : describe_parameters(line.name));
+           });
+  return ranks::broadcast(communicator, status, 0);
+}
+
+void print(const InputError &error)
+{
+  const std::size_t n = error.problems().size();
+  std::cerr << "antiform: " << n << (n == 1 ? " problem" : " problems") << '\n';
+  for (const std::string &problem : error.problems())
+    std::cerr << "  " << problem << '\n';
+}
+} // namespace
+
+int main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const unsigned int rank = ranks::this_mpi_process(MPI_COMM_WORLD);
+  try
+  {
+    return execute(parse_command_line({argv + 1, argv + argc}), MPI_COMM_WORLD);
+  }
+  catch (const InputError &error)
+  {
+    if (rank == 0)
+      print(error);
+    return 1;
+  }
+  catch (const antiform::NumericalError &error) // raised on all ranks together
+  {
+    if (rank == 0)
+      std::cerr << "antiform: " << error.what() << std::endl;
+    return 2;
+  }
+  catch (const std::exception &error) // perhaps on this rank alone: stop the others too
+  {
+    std::cerr << "antiform, rank " << rank << ": " << error.what() << std::endl;
+    if (ranks::n_mpi_processes(MPI_COMM_WORLD) > 1)
+      MPI_Abort(MPI_COMM_WORLD, 2);
+    return 2;
+  }
+}

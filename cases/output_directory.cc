@@ -1,0 +1,67 @@
+#include "cases/output_directory.h"
+
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <unistd.h>
+
+namespace antiform::cases
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+std::string default_output(const std::string &deck)
+{
+  const std::string extension = ".prm";
+  const bool ends_in_it =
+      deck.size() > extension.size() &&
+      deck.compare(deck.size() - extension.size(), extension.size(), extension) == 0;
+  return (ends_in_it ? deck.substr(0, deck.size() - extension.size()) : deck) + "-output";
+}
+
+/// Permission bits say little (root, read-only mounts, full quotas): write and see.
+void prove_writable(const fs::path &directory)
+{
+  std::string name = (directory / ".antiform-XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0)
+    throw InputError({"output directory '" + directory.string() +
+                      "': cannot be written to (" + std::strerror(errno) +
+                      "). Change its permissions, or give another one with -o DIR."});
+  close(file);
+  unlink(name.c_str());
+}
+} // namespace
+
+std::string prepare_output_directory(RunOptions &options)
+{
+  if (options.output.empty())
+    options.output = default_output(options.deck);
+  const fs::path directory(options.output);
+
+  std::error_code error;
+  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+    throw InputError({"output directory '" + options.output +
+                      "': is a file, not a directory. Give another one with -o DIR."});
+  fs::create_directories(directory, error);
+  if (error)
+    throw InputError({"output directory '" + options.output + "': cannot be created (" +
+                      error.message() +
+                      "). Give one that can be written to with -o DIR."});
+  for (const char *file : {"summary.json", "state.h5", "deck.prm"})
+    if (!options.resume && fs::exists(directory / file, error))
+      throw InputError({"output directory '" + options.output + "': holds another run (" +
+                        file +
+                        "). Continue that run with --resume, give another directory "
+                        "with -o DIR, or remove this one."});
+  prove_writable(directory);
+
+  if (options.resume && !fs::exists(directory / "state.h5", error))
+  {
+    options.resume = false;
+    return "There is no state.h5 in '" + options.output + "': the run starts afresh.";
+  }
+  return "";
+}
+} // namespace antiform::cases

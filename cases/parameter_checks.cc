@@ -1,0 +1,301 @@
+// What a scene is made of and what cannot go together in it.
+#include "cases/deck_reader.h"
+#include "cases/declarations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <unistd.h>
+
+namespace antiform::cases
+{
+namespace
+{
+std::string short_text(const double number)
+{
+  std::ostringstream text;
+  text.precision(4);
+  text << number;
+  return text.str();
+}
+
+std::string metres(const double length)
+{
+  return short_text(length) + " m";
+}
+
+using Findings = std::vector<Finding>;
+
+void check_components(const Parameters &p, Findings &findings)
+{
+  const auto find = [&](const std::string &text) {
+    findings.push_back({{"Components"}, text});
+  };
+  if (!p.has("layer"))
+    find(
+        "there is no layer, and every length is a multiple of its thickness. Add layer.");
+  if (p.has("foundation") && !p.has("matrix"))
+    find("foundation without matrix: its stiffness is a multiple of the matrix' modulus, "
+         "and "
+         "it carries the matrix' base. Add matrix or remove foundation.");
+  for (const std::string load : {"gravity", "surface pressure"})
+    if (p.has(load) && !p.has("matrix"))
+      find(load +
+           " without matrix: nothing would carry the layer, and it would fall. Add "
+           "matrix or remove " +
+           load + ".");
+  if (p.run.driver == "quasi-static" && !p.has("walls"))
+    findings.push_back({{"Run/Driver", "Components"},
+                        "without walls nothing shortens the scene, and the quasi-static "
+                        "driver would never end. Add walls to 'Components', or use the "
+                        "static driver."});
+  else if (!p.has("walls") && !p.has("gravity") && !p.has("surface pressure"))
+    find("nothing loads the scene. Add walls, gravity or surface pressure.");
+}
+
+void check_strengths(const std::string &section,
+                     const double tensile_strength,
+                     const double cohesion,
+                     const double tan_friction,
+                     Findings &findings)
+{
+  // Beyond the apex of the Coulomb line the shear strength would be negative.
+  if (tan_friction > 0. && tensile_strength > cohesion / tan_friction)
+    findings.push_back(
+        {{section + "/Tensile strength", section + "/Cohesion",
+          section + "/Friction angle"},
+         "beyond cohesion / tan(friction angle) = " +
+             short_text(cohesion / tan_friction) +
+             " Pa, where the shear strength has fallen to nothing. Give at most that, or "
+             "more cohesion."});
+}
+
+void check_layer(const Parameters &p, Findings &findings)
+{
+  const auto &joint = p.layer.joint;
+  if (p.layer.representation == "grains" && joint.breakable)
+    check_strengths("Layer/Flat joint", joint.tensile_strength, joint.cohesion,
+                    joint.tan_friction, findings);
+  if (p.layer.representation == "grains" && p.layer_length() < p.layer.thickness)
+    findings.push_back(
+        {{p.layer.length_ratio > 0. ? "Layer/Length ratio" : "Layer/Slenderness ratio",
+          "Layer/Young modulus", "Layer/UCS"},
+         "the layer would be " + metres(p.layer_length()) + " long and " +
+             metres(p.layer.thickness) +
+             " thick. Give a length of at least the thickness."});
+}
+
+void check_matrix(const Parameters &p, Findings &findings)
+{
+  const MatrixParameters &m = p.matrix;
+  if (m.burial_depth_ratio == 0.)
+    findings.push_back({{"Matrix/Burial depth ratio"},
+                        "there is no cover above the layer. Give a value > 0, or remove "
+                        "matrix from 'Components' for a bare layer."});
+  if (m.base_depth_ratio == 0.)
+    findings.push_back(
+        {{"Matrix/Base depth ratio"},
+         "there is no matrix below the layer, which must rest on some. Give a "
+         "value > 0, or remove matrix from 'Components' for a bare layer."});
+  if (p.layer.representation == "continuum" && m.representation == "grains")
+    findings.push_back(
+        {{"Matrix/Representation", "Layer/Representation"},
+         "a layer of finite elements in a matrix of grains does not exist. "
+         "Set 'Layer/Representation' = 'grains', or this to 'continuum'."});
+
+  const bool has_grains = m.representation == "grains" || p.is_bridged();
+  if (has_grains && m.poisson_ratio >= 0.25)
+    findings.push_back(
+        {{"Matrix/Poisson ratio", "Matrix/Representation", "Layer/Representation"},
+         "out of reach of the matrix grains: a packing of disks stays below nu_2D = 1/3, "
+         "which is 0.25 in plane strain. Give a smaller ratio, or 'Layer/Representation' "
+         "= "
+         "'continuum'; a surface interface, which needs no matrix grains, does not exist "
+         "yet."});
+  if (has_grains && m.breakable && m.tensile_strength == 0. && m.cohesion == 0.)
+    findings.push_back(
+        {{"Matrix/Breakable", "Matrix/Tensile strength", "Matrix/Cohesion"},
+         "but 'Matrix/Tensile strength' and 'Matrix/Cohesion' are 0 Pa: every "
+         "joint would break in the first step. Give strengths."});
+  if (has_grains)
+    check_strengths("Matrix", m.tensile_strength, m.cohesion, m.tan_friction, findings);
+  if (m.representation == "continuum" && m.largest_cell < m.cell_size)
+    findings.push_back({{"Matrix/Largest cell ratio", "Matrix/Cell size ratio"},
+                        "smaller than 'Matrix/Cell size ratio' = " +
+                            short_text(m.cell_size) + ". Give at least that."});
+}
+
+/// From the layer outward: buffer, overlap, and at least one row of cells that is mesh
+/// only.
+void check_overlap_fits(const Parameters &p,
+                        const std::string &what,
+                        const std::string &entry,
+                        const double ratio,
+                        Findings &findings)
+{
+  const double d = p.grain_diameter();
+  const double room = ratio * p.layer.thickness;
+  const double overlap = p.bridging.overlap * d;
+  const double buffer = p.bridging.buffer * d;
+  const double cell = p.matrix.cell_size * d;
+  // The relative slack is for ratios that fit exactly but for rounding.
+  if (ratio == 0. || overlap + buffer + cell <= room * (1. + 1e-12))
+    return;
+  const double largest = std::floor((room - buffer - cell) / d * 1e3) / 1e3;
+  std::string text = "the overlap is wider than the " + what + ": buffer " +
+                     metres(buffer) + " + overlap " + metres(overlap) +
+                     " + one row of cells " + metres(cell) + " = " +
+                     metres(buffer + overlap + cell) + ", but the " + what + " is " +
+                     metres(room) + ". ";
+  if (largest >= p.matrix.cell_size)
+    text += "The largest overlap width ratio that fits is " + short_text(largest) + " (" +
+            metres(largest * d) + "); or give";
+  else
+    text += "No overlap fits beside this buffer. Give";
+  text += " more grains across the layer, a smaller buffer width ratio, a larger '" +
+          entry + "', or 'Matrix/Representation' = 'grains'.";
+  findings.push_back(
+      {{"Bridging domain/Overlap width ratio", "Bridging domain/Buffer width ratio",
+        "Matrix/Cell size ratio", "Layer/Grains across", "Layer/Thickness", entry},
+       text});
+}
+
+void check_bridging(const Parameters &p, Findings &findings)
+{
+  if (p.matrix.cell_size < 1.5)
+    findings.push_back(
+        {{"Matrix/Cell size ratio"},
+         "multiplier space too rich: cells below 1.5 grain diameters hold "
+         "more nodes than grains, and the constraint becomes singular. Give "
+         "2 to 4."});
+  if (p.bridging.overlap < p.matrix.cell_size)
+    findings.push_back({{"Bridging domain/Overlap width ratio", "Matrix/Cell size ratio"},
+                        "narrower than one cell ('Matrix/Cell size ratio' = " +
+                            short_text(p.matrix.cell_size) +
+                            "). Give at least 2 cells and 4 grain diameters."});
+  check_overlap_fits(p, "cover", "Matrix/Burial depth ratio", p.matrix.burial_depth_ratio,
+                     findings);
+  check_overlap_fits(p, "base", "Matrix/Base depth ratio", p.matrix.base_depth_ratio,
+                     findings);
+}
+
+void check_run(const Parameters &p, Findings &findings)
+{
+  if (p.run.end_shortening > p.run.longest_shortening)
+    findings.push_back(
+        {{"Run/End shortening", "Run/Longest shortening"},
+         "beyond 'Run/Longest shortening' = " + short_text(p.run.longest_shortening) +
+             ", where the run would be given up. Raise that, or end sooner."});
+  if (p.run.driver == "static" && p.has("walls") && p.run.end_shortening == 0.)
+    findings.push_back(
+        {{"Run/End shortening", "Run/Driver"},
+         "the static driver does not look for a peak. Give the shortening to "
+         "go to, > 0."});
+}
+
+void check_memory(const Parameters &p, Findings &findings)
+{
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (p.estimated_memory() <= memory)
+    return;
+  constexpr double gib = 1024. * 1024. * 1024.;
+  findings.push_back({{"Layer/Grains across", "Layer/Thickness"},
+                      "about " + short_text(p.estimated_grains()) +
+                          " grains, which need " +
+                          short_text(p.estimated_memory() / gib) +
+                          " GiB of memory; this machine has " + short_text(memory / gib) +
+                          " GiB. Give fewer grains across the layer, a shorter layer, or "
+                          "'continuum' for the matrix."});
+}
+} // namespace
+
+std::vector<Finding> check_parameters(const Parameters &p)
+{
+  Findings findings;
+  check_components(p, findings);
+  if (p.has("layer"))
+    check_layer(p, findings);
+  if (p.has("layer") && p.has("matrix"))
+    check_matrix(p, findings);
+  if (p.is_bridged())
+    check_bridging(p, findings);
+  check_run(p, findings);
+  if (p.has("layer"))
+    check_memory(p, findings);
+  return findings;
+}
+
+// The deck gives degrees; a tangent that no angle rounds to could not be written back.
+LayerParameters::LayerParameters()
+{
+  joint.tan_friction = tangent_of_degrees(8.);
+}
+
+bool Parameters::has(const std::string &component) const
+{
+  return std::find(components.begin(), components.end(), component) != components.end();
+}
+
+bool Parameters::is_bridged() const
+{
+  return has("layer") && has("matrix") && layer.representation == "grains" &&
+         matrix.representation == "continuum";
+}
+
+double Parameters::layer_length() const
+{
+  if (layer.length_ratio > 0.)
+    return layer.length_ratio * layer.thickness;
+  // Slenderness sqrt(12) L/h = Lambda lambda_c, lambda_c = pi sqrt(E/UCS).
+  const double critical =
+      M_PI * std::sqrt(layer.young_modulus / layer.compressive_strength);
+  return layer.slenderness_ratio * critical * layer.thickness / std::sqrt(12.);
+}
+
+double Parameters::section_length() const
+{
+  const double ends = layer.shape == "cosine" ? 2. * layer.straight_end_ratio : 0.;
+  return layer_length() * (1. + ends);
+}
+
+double Parameters::grain_diameter() const
+{
+  return layer.thickness / layer.grains_across;
+}
+
+double Parameters::matrix_modulus() const
+{
+  return layer.young_modulus / matrix.stiffness_contrast;
+}
+
+double Parameters::estimated_grains() const
+{
+  if (layer.representation != "grains")
+    return 0.;
+  const double d = grain_diameter();
+  double height = layer.thickness;
+  if (has("matrix"))
+  {
+    const double cover = matrix.burial_depth_ratio * layer.thickness;
+    const double base = matrix.base_depth_ratio * layer.thickness;
+    const double beside = (bridging.overlap + bridging.buffer) * d;
+    const double bend = layer.shape == "cosine" ? layer.amplitude_ratio : 0.;
+    if (matrix.representation == "grains")
+      height += cover + base + bend * layer.thickness;
+    else
+      height += std::min(cover, beside) + std::min(base, beside);
+  }
+  // Solid fraction 0.84 over the mean area of a disk, pi/4 d^2 (1 + variance of d).
+  constexpr double grains_per_square_diameter = 1.05;
+  return grains_per_square_diameter * height * section_length() / (d * d);
+}
+
+double Parameters::estimated_memory() const
+{
+  // Bytes: 600 a grain, 150 for each of its 2.4 joints; a supernodal factor of the bonded
+  // assembly takes 2.4 GB for a million grains.
+  const double factor = run.driver == "dynamic" ? 0. : 2400.;
+  return estimated_grains() * (600. + 2.4 * 150. + factor);
+}
+} // namespace antiform::cases

@@ -1,0 +1,356 @@
+// What a deck may say: every entry with its unit, range and default.
+#include "cases/declarations.h"
+
+#include <algorithm>
+
+namespace antiform::cases
+{
+namespace
+{
+void declare_strengths(double &tensile_strength,
+                       double &cohesion,
+                       double &tan_friction,
+                       double &residual_friction,
+                       Declarations &entries)
+{
+  entries.number("Tensile strength", tensile_strength,
+                 "sigma_b, normal stress at which a bonded element breaks [Pa].",
+                 Number::at_least(0.));
+  entries.number("Cohesion", cohesion,
+                 "c_b, shear strength of a bonded element without normal stress [Pa].",
+                 Number::at_least(0.));
+  entries.angle("Friction angle", tan_friction,
+                "phi_b, by which pressure adds to the shear strength of a bonded element "
+                "[degrees].");
+  entries.number("Residual friction", residual_friction,
+                 "mu, friction coefficient of a broken element [-].",
+                 Number::at_least(0.));
+}
+
+void declare(discrete::FlatJoint &joint, Declarations &entries)
+{
+  entries.enter("Flat joint");
+  entries.number(
+      "Effective modulus", joint.effective_modulus,
+      "E*, of grains and bonds; the stiffness of a joint follows from it and the "
+      "two radii [Pa].",
+      Number::above(0.));
+  entries.number("Stiffness ratio", joint.stiffness_ratio,
+                 "kappa, normal over shear stiffness [-].", Number::above(0.));
+  declare_strengths(joint.tensile_strength, joint.cohesion, joint.tan_friction,
+                    joint.residual_friction, entries);
+  entries.number("Radius multiplier", joint.radius_multiplier,
+                 "lambda, half length of the joint over the smaller radius [-].",
+                 Number::above(0.).up_to(1.));
+  entries.whole("Elements", joint.n_elements,
+                "N, elements of a joint; each breaks on its own [-].",
+                Number::between(1, 16));
+  entries.flag("Element moment", joint.element_moment,
+               "Does the stress vary linearly within an element, or is it uniform?");
+  entries.leave();
+}
+
+void declare(LayerParameters &layer, Declarations &entries)
+{
+  entries.enter("Layer");
+  entries.choice("Representation", layer.representation,
+                 "Flat-jointed grains that may break, or finite elements that do not.",
+                 "grains|continuum");
+  entries.number("Thickness", layer.thickness,
+                 "h, the length that all ratios are multiples of [m].",
+                 Number::above(0.));
+  entries.choice(
+      "Shape", layer.shape,
+      "straight, or cosine: bent beforehand into one anticline between straight "
+      "ends.",
+      "straight|cosine");
+  entries.number(
+      "Slenderness ratio", layer.slenderness_ratio,
+      "Lambda, slenderness sqrt(12) L/h over the critical one, pi sqrt(E/UCS), at "
+      "which buckling and shear failure coincide [-].",
+      Number::above(0.));
+  entries.number(
+      "Length ratio", layer.length_ratio,
+      "L/h, wavelength (cosine) or length (straight) over thickness; 0: from the "
+      "slenderness ratio [-].",
+      Number::at_least(0.));
+  entries.number(
+      "Amplitude ratio", layer.amplitude_ratio,
+      "a0/h, height of the crest above the troughs (cosine) over thickness [-].",
+      Number::at_least(0.));
+  entries.number(
+      "Straight end ratio", layer.straight_end_ratio,
+      "Length of each straight end over L (cosine); without them the walls decide "
+      "where the layer breaks [-].",
+      Number::at_least(0.));
+  entries.number(
+      "Young modulus", layer.young_modulus,
+      "E of the rock as a laboratory measures it; grains have theirs from the flat "
+      "joint [Pa].",
+      Number::above(0.));
+  entries.number("Poisson ratio", layer.poisson_ratio,
+                 "nu of the rock, plane strain [-].", Number::at_least(0.).below(0.5));
+  entries.number(
+      "UCS", layer.compressive_strength,
+      "Uniaxial compressive strength of the rock; the slenderness ratio needs it "
+      "[Pa].",
+      Number::above(0.));
+  entries.number("Grains across", layer.grains_across,
+                 "h over the mean grain diameter: the resolution of the scene [-].",
+                 Number::at_least(2.));
+  entries.number("Radius ratio", layer.radius_ratio,
+                 "Largest over smallest grain radius, uniform by number [-].",
+                 Number::between(1., 10.));
+  entries.number("Installation gap ratio", layer.installation_gap,
+                 "Largest gap that is bonded, over the mean grain radius [-].",
+                 Number::between(0., 1.));
+  entries.number("Grain density", layer.grain_density,
+                 "Of the solid; the rock's is less by the porosity [kg/m^3].",
+                 Number::above(0.));
+  entries.whole("Seed", layer.seed,
+                "Of the random packing; the same seed gives the same bits [-].",
+                Number::at_least(0.));
+  entries.flag("Breakable", layer.joint.breakable,
+               "May joints break? If not, would-be breaks are counted.");
+  declare(layer.joint, entries);
+  entries.leave();
+}
+
+void declare_matrix_mesh(MatrixParameters &matrix, Declarations &entries)
+{
+  entries.number(
+      "Mesh modulus ratio", matrix.mesh_modulus_ratio,
+      "Moduli of the mesh over those of the matrix grains; other than 1 only to "
+      "measure what a mismatch does [-].",
+      Number::above(0.));
+  entries.number("Cell size ratio", matrix.cell_size,
+                 "Size of the cells near the layer over the mean grain diameter [-].",
+                 Number::above(0.));
+  entries.number(
+      "Largest cell ratio", matrix.largest_cell,
+      "Height of the cells away from the layer over the mean grain diameter [-].",
+      Number::above(0.));
+  entries.whole("Element degree", matrix.element_degree,
+                "Polynomial degree of the finite elements [-].", Number::between(1, 2));
+}
+
+void declare(MatrixParameters &matrix, Declarations &entries)
+{
+  entries.enter("Matrix");
+  entries.choice(
+      "Representation", matrix.representation,
+      "Finite elements (joined to a layer of grains by the bridging domain), or "
+      "grains everywhere.",
+      "continuum|grains");
+  entries.number("Stiffness contrast", matrix.stiffness_contrast,
+                 "E/E0, modulus of the layer over that of the matrix [-].",
+                 Number::above(0.));
+  entries.number("Poisson ratio", matrix.poisson_ratio,
+                 "nu_0 of the matrix, plane strain [-].",
+                 Number::at_least(0.).below(0.5));
+  entries.number("Grain density", matrix.grain_density,
+                 "Of the solid; the matrix' is less by the porosity [kg/m^3].",
+                 Number::above(0.));
+  entries.number("Burial depth ratio", matrix.burial_depth_ratio,
+                 "H/h, cover above the crest over thickness of the layer [-].",
+                 Number::at_least(0.));
+  entries.number("Base depth ratio", matrix.base_depth_ratio,
+                 "Matrix below the layer's lowest point over thickness of the layer [-].",
+                 Number::at_least(0.));
+  entries.choice(
+      "Base", matrix.base,
+      "What the base stands on when no foundation is listed: roller (free along "
+      "x) or fixed.",
+      "roller|fixed");
+  entries.choice("Interface", matrix.interface,
+                 "Contact of layer and matrix: cemented, or frictionless (may open, no "
+                 "shear).",
+                 "cemented|frictionless");
+  entries.choice("Join", matrix.join, "How grains and mesh meet.", "bridging domain");
+  declare_matrix_mesh(matrix, entries);
+  entries.number("Tile size ratio", matrix.tile_size,
+                 "Period of the tile that matrix grains are cut from over the mean grain "
+                 "diameter [-].",
+                 Number::at_least(8.));
+  entries.flag("Breakable", matrix.breakable,
+               "May joints of matrix grains break? If not, would-be breaks are counted "
+               "where strengths are given.");
+  declare_strengths(matrix.tensile_strength, matrix.cohesion, matrix.tan_friction,
+                    matrix.residual_friction, entries);
+  entries.leave();
+}
+
+void declare(BridgingParameters &bridging, Declarations &entries)
+{
+  entries.enter("Bridging domain");
+  entries.number(
+      "Overlap width ratio", bridging.overlap,
+      "w, width in which grains and mesh share the energy, over the mean grain "
+      "diameter [-].",
+      Number::above(0.));
+  entries.number(
+      "Buffer width ratio", bridging.buffer,
+      "Matrix grains between layer and overlap, over the mean grain diameter [-].",
+      Number::at_least(0.));
+  entries.choice(
+      "Ramp", bridging.ramp,
+      "Weight across the overlap; automatic: cubic from 4 cells on, else linear.",
+      "automatic|linear|cubic");
+  entries.number("Weight floor", bridging.weight_floor,
+                 "eps, least weight of either model; keeps the system regular [-].",
+                 Number::above(0.).up_to(0.1));
+  entries.flag("Constraint", bridging.constraint,
+               "Are the two models joined? false only to see what the constraint does.");
+  entries.leave();
+}
+
+void declare(FoundationParameters &foundation, Declarations &entries)
+{
+  entries.enter("Foundation");
+  entries.number(
+      "Stiffness ratio", foundation.stiffness_ratio,
+      "k_w h/E0, stiffness of the elastic (Winkler) foundation under the base over "
+      "that of the matrix [-].",
+      Number::above(0.));
+  entries.leave();
+}
+
+void declare(WallsParameters &walls, Declarations &entries)
+{
+  entries.enter("Walls");
+  entries.number(
+      "Transits per millistrain", walls.transits_per_millistrain,
+      "Axial wave transits of the layer in which the walls shorten it by 1e-3: "
+      "slowness; 300 up to the peak bring it within 5 % [-].",
+      Number::above(0.));
+  entries.number("Ramp", walls.ramp, "Transits in which the walls come up to speed [-].",
+                 Number::at_least(0.));
+  entries.leave();
+}
+
+void declare(RunParameters &run, Declarations &entries)
+{
+  entries.enter("Run");
+  entries.choice(
+      "Driver", run.driver,
+      "quasi-static (rates do not matter), dynamic (they do), static (implicit "
+      "solves).",
+      "quasi-static|dynamic|static");
+  entries.number("Step safety", run.safety, "Step over the rigorous stable step [-].",
+                 Number::above(0.).below(1.));
+  entries.number("End shortening", run.end_shortening,
+                 "Shortening at which the run ends; 0: after the peak, as the next entry "
+                 "says [-].",
+                 Number::at_least(0.).below(1.));
+  entries.number("Strain multiple of peak", run.strain_multiple_of_peak,
+                 "The run ends at this multiple of the shortening at the peak [-].",
+                 Number::above(1.));
+  entries.number("Longest shortening", run.longest_shortening,
+                 "The run ends here at the latest, peak or not [-].",
+                 Number::above(0.).below(1.));
+  entries.whole("Load steps", run.load_steps,
+                "Steps of the static driver up to the end shortening [-].",
+                Number::at_least(1.));
+  entries.leave();
+}
+
+void declare(OutputParameters &output, Declarations &entries)
+{
+  entries.enter("Output");
+  entries.whole("Samples per millistrain", output.samples_per_millistrain,
+                "Lines of history.csv for a shortening of 1e-3 [-].",
+                Number::at_least(1.));
+  entries.number("Fields interval", output.fields_interval,
+                 "Shortening between two field files [-].", Number::above(0.));
+  entries.number("Checkpoint interval", output.checkpoint_minutes,
+                 "Wall time between two checkpoints [minutes].", Number::above(0.));
+  entries.leave();
+}
+
+void declare_one(const std::string &name,
+                 const std::string &entry,
+                 double &value,
+                 const std::string &documentation,
+                 const Number &range,
+                 Declarations &entries)
+{
+  entries.enter(name);
+  entries.number(entry, value, documentation, range);
+  entries.leave();
+}
+} // namespace
+
+const std::vector<std::string> &all_components()
+{
+  static const std::vector<std::string> names = {
+      "layer", "matrix", "foundation", "surface pressure", "gravity", "walls", "damping"};
+  return names;
+}
+
+const std::vector<Section> &all_sections()
+{
+  static const std::vector<Section> sections = {
+      {"Layer", "component layer"},
+      {"Matrix", "component matrix"},
+      {"Bridging domain", "the layer is grains and the matrix is continuum"},
+      {"Foundation", "component foundation"},
+      {"Surface pressure", "component surface pressure"},
+      {"Gravity", "component gravity"},
+      {"Walls", "component walls"},
+      {"Damping", "component damping"},
+      {"Run", "always"},
+      {"Output", "always"}};
+  return sections;
+}
+
+bool is_read(const std::string &section, const Parameters &p)
+{
+  if (section == "Run" || section == "Output")
+    return true;
+  if (section == "Bridging domain")
+    return p.is_bridged();
+  std::string component = section;
+  component[0] = static_cast<char>(component[0] - 'A' + 'a');
+  return p.has(component);
+}
+
+void declare_parameters(Parameters &p,
+                        const std::vector<std::string> &sections,
+                        Declarations &entries)
+{
+  entries.text("Title", p.title, "What the run is called in its output.");
+  entries.list("Components", p.components,
+               "What exists in the scene, a list: layer, matrix, foundation, surface "
+               "pressure, gravity, walls, damping. Only their sections are read.");
+  for (const std::string &section : sections)
+  {
+    if (section == "Layer")
+      declare(p.layer, entries);
+    else if (section == "Matrix")
+      declare(p.matrix, entries);
+    else if (section == "Bridging domain")
+      declare(p.bridging, entries);
+    else if (section == "Foundation")
+      declare(p.foundation, entries);
+    else if (section == "Surface pressure")
+      declare_one(section, "Pressure", p.surface_pressure.pressure,
+                  "Normal to the top of the section, positive inward [Pa].",
+                  Number::at_least(0.), entries);
+    else if (section == "Gravity")
+      declare_one(section, "Acceleration", p.gravity.acceleration, "Downward [m/s^2].",
+                  Number::above(0.), entries);
+    else if (section == "Walls")
+      declare(p.walls, entries);
+    else if (section == "Damping")
+      declare_one(
+          section, "Coefficient", p.damping.coefficient,
+          "alpha of local damping: share of the unbalanced force that opposes the "
+          "velocity [-].",
+          Number::above(0.).below(1.), entries);
+    else if (section == "Run")
+      declare(p.run, entries);
+    else
+      declare(p.output, entries);
+  }
+}
+} // namespace antiform::cases

@@ -1,0 +1,361 @@
+#include "cases/parameters.h"
+#include "cases/deck_reader.h"
+#include "cases/declarations.h"
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace antiform::cases
+{
+namespace
+{
+/// Words of the design that this version does not have; refused by naming what exists.
+const std::map<std::string, std::vector<std::string>> planned = {
+    {"Layer/Representation", {"manifold", "adaptive"}},
+    {"Matrix/Representation", {"manifold", "adaptive"}},
+    {"Matrix/Interface", {"sliding", "frictional"}},
+    {"Matrix/Join", {"surface interface"}}};
+
+std::vector<std::string> names_of(const std::vector<Section> &sections)
+{
+  std::vector<std::string> names;
+  for (const Section &section : sections)
+    names.push_back(section.name);
+  return names;
+}
+
+std::string section_of(const std::string &path)
+{
+  return path.substr(0, path.find('/'));
+}
+
+std::string parent_of(const std::string &path)
+{
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "" : path.substr(0, slash);
+}
+
+std::string name_of(const std::string &path)
+{
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? path : path.substr(slash + 1);
+}
+
+/// Reading a deck: the lines, what is wrong with them, and the parameters they give.
+class DeckParser
+{
+public:
+  DeckParser(const std::string &file, const std::vector<std::string> &overrides)
+      : file_(file)
+  {
+    text_ = scan_deck(file, problems_);
+    const bool unreadable = !problems_.empty() && text_.entries.empty();
+    for (const std::string &text : overrides)
+      scan_override(text, text_, problems_);
+    if (unreadable)
+      throw InputError(problems_); // nothing else can be said of a deck that is not there
+    Parameters scratch;
+    declare_parameters(scratch, names_of(all_sections()), known_);
+    for (const DeckLine &line : text_.entries)
+      last_[line.path] = line;
+  }
+
+  Parameters parse()
+  {
+    Parameters p;
+    find_components(p);
+    refuse_unknown_names(p);
+
+    std::vector<std::string> sections;
+    for (const Section &section : all_sections())
+      if (is_read(section.name, p))
+        sections.push_back(section.name);
+    dealii::ParameterHandler prm;
+    Declarations declarations(prm);
+    declare_parameters(p, sections, declarations);
+    for (const Declarations::Entry &entry : declarations.entries())
+      if (const auto line = last_.find(entry.path); line != last_.end())
+        read_value(entry, line->second, declarations);
+
+    for (const Finding &finding : check_parameters(p))
+      report(finding);
+    if (!problems_.empty())
+      throw InputError(problems_);
+    return p;
+  }
+
+private:
+  /// Components and the two representations decide which sections are read.
+  void find_components(Parameters &p)
+  {
+    const auto line = last_.find("Components");
+    if (line == last_.end() || line->second.value.empty())
+    {
+      problems_.push_back(
+          (line == last_.end() ? file_ : line->second.place) + ": 'Components' is " +
+          (line == last_.end() ? "missing" : "empty") +
+          ". List what the scene has, of: " + join(all_components()) + ".");
+      refused_.push_back("Components");
+    }
+    else
+    {
+      std::istringstream words(line->second.value);
+      for (std::string word; std::getline(words, word, ',');)
+        add_component(tidy(word), line->second.place, p.components);
+    }
+    for (auto [path, target] :
+         {std::pair{"Layer/Representation", &p.layer.representation},
+          std::pair{"Matrix/Representation", &p.matrix.representation}})
+      if (const auto set = last_.find(path); set != last_.end())
+        if (known_.find(path)->pattern->match(set->second.value))
+          *target = set->second.value;
+  }
+
+  void add_component(const std::string &name,
+                     const std::string &place,
+                     std::vector<std::string> &components)
+  {
+    const std::vector<std::string> &all = all_components();
+    const std::string begin = place + ": 'Components' lists '" + name + "'";
+    if (std::find(all.begin(), all.end(), name) == all.end())
+    {
+      const std::string near = nearest_name(name, all);
+      problems_.push_back(begin + ", which does not exist. " +
+                          (near.empty() ? "" : "Did you mean '" + near + "'? ") +
+                          "What exists: " + join(all) + ".");
+      refused_.push_back("Components");
+    }
+    else if (std::find(components.begin(), components.end(), name) != components.end())
+      problems_.push_back(begin + " twice. Name it once.");
+    else
+      components.push_back(name);
+  }
+
+  bool is_known_section(const std::string &path) const
+  {
+    return std::any_of(known_.entries().begin(), known_.entries().end(),
+                       [&](const Declarations::Entry &e)
+                       { return e.path.compare(0, path.size() + 1, path + "/") == 0; });
+  }
+
+  void refuse_unknown_names(const Parameters &p)
+  {
+    std::vector<std::string> unknown_sections;
+    const auto inside_unknown = [&](const std::string &path)
+    {
+      return std::any_of(unknown_sections.begin(), unknown_sections.end(),
+                         [&](const std::string &s)
+                         { return path.compare(0, s.size() + 1, s + "/") == 0; });
+    };
+    for (const DeckLine &line : text_.sections)
+      if (!is_known_section(line.path) && !inside_unknown(line.path) &&
+          (parent_of(line.path).empty() || is_read(section_of(line.path), p)))
+      {
+        problems_.push_back(line.place + ": " + unknown_section(line.path));
+        unknown_sections.push_back(line.path);
+      }
+
+    for (const DeckLine &line : text_.entries)
+    {
+      const std::string parent = parent_of(line.path);
+      if (known_.find(line.path) != nullptr || inside_unknown(line.path))
+        continue;
+      if (!parent.empty() && !is_known_section(parent))
+        problems_.push_back(set_place(line) + unknown_section(parent));
+      else if (parent.empty() || is_read(section_of(line.path), p))
+        problems_.push_back(set_place(line) + unknown_entry(line.path));
+    }
+  }
+
+  static std::string set_place(const DeckLine &line)
+  {
+    return line.place == "--set" ? "--set \"" + line.path + "=" + line.value + "\": "
+                                 : line.place + ": ";
+  }
+
+  std::string unknown_section(const std::string &path) const
+  {
+    std::vector<std::string> siblings;
+    if (parent_of(path).empty())
+      siblings = names_of(all_sections());
+    else
+      for (const Declarations::Entry &entry : known_.entries())
+        if (const std::string section = parent_of(entry.path);
+            parent_of(section) == parent_of(path) && !section.empty() &&
+            std::find(siblings.begin(), siblings.end(), name_of(section)) ==
+                siblings.end())
+          siblings.push_back(name_of(section));
+    const std::string near = nearest_name(name_of(path), siblings);
+    return "there is no subsection '" + path + "'. " +
+           (near.empty() ? "" : "Did you mean '" + near + "'? ") +
+           (siblings.empty() ? "" : "Subsections here: " + join(siblings) + ".");
+  }
+
+  std::string unknown_entry(const std::string &path) const
+  {
+    std::vector<std::string> siblings, elsewhere;
+    for (const Declarations::Entry &entry : known_.entries())
+    {
+      if (parent_of(entry.path) == parent_of(path))
+        siblings.push_back(name_of(entry.path));
+      else if (name_of(entry.path) == name_of(path))
+        elsewhere.push_back("'" + entry.path + "'");
+    }
+    const std::string near = nearest_name(name_of(path), siblings);
+    std::string text = "there is no entry '" + path + "'. ";
+    if (!near.empty())
+      text += "Did you mean '" + near + "'?";
+    else if (!elsewhere.empty())
+      text += "There is " + join(elsewhere) + ".";
+    else
+      text += "Entries here: " + join(siblings) + ".";
+    return text;
+  }
+
+  void read_value(const Declarations::Entry &entry,
+                  const DeckLine &line,
+                  Declarations &declarations)
+  {
+    if (entry.path == "Components")
+      return; // read beforehand
+    if (entry.pattern->match(line.value))
+    {
+      declarations.set(entry.path, line.value);
+      return;
+    }
+    refused_.push_back(entry.path);
+    const bool is_number = dynamic_cast<const Number *>(entry.pattern.get()) != nullptr;
+    double number = 0.;
+    std::string what = "is not one of its words";
+    if (is_number)
+      what = parse_number(line.value, number) ? "is out of range" : "is not a number";
+    const auto words = planned.find(entry.path);
+    if (words != planned.end() && std::find(words->second.begin(), words->second.end(),
+                                            line.value) != words->second.end())
+      what = "does not exist yet in this version";
+    const std::string unit = is_number ? unit_of(entry) : "";
+    problems_.push_back(line.place + ": '" + entry.path + "' = '" + line.value + "' " +
+                        what + ". Give " + range_in_words(entry) +
+                        (unit.empty() ? "" : " ") + unit + "; the default is " +
+                        entry.default_value + ".");
+  }
+
+  void report(const Finding &finding)
+  {
+    for (const std::string &path : finding.entries)
+      if (std::find(refused_.begin(), refused_.end(), path) != refused_.end())
+        return; // said already; what follows from a refused value is not the user's error
+    const std::string &path = finding.entries.front();
+    const auto line = last_.find(path);
+    const std::string value = line != last_.end()
+                                  ? line->second.value + "'"
+                                  : known_.find(path)->default_value + "' (the default)";
+    problems_.push_back((line != last_.end() ? line->second.place : file_) + ": '" +
+                        path + "' = '" + value + ": " + finding.text);
+  }
+
+  std::string file_;
+  DeckText text_;
+  std::vector<std::string> problems_;
+  std::vector<std::string> refused_; ///< paths whose value was not taken
+  std::map<std::string, DeckLine> last_;
+  dealii::ParameterHandler known_prm_;
+  Declarations known_{known_prm_};
+};
+} // namespace
+
+InputError::InputError(const std::vector<std::string> &problems)
+    : std::runtime_error(join(problems, "\n"))
+    , problems_(problems)
+{
+}
+
+Parameters read_deck(const std::string &file, const std::vector<std::string> &overrides)
+{
+  return DeckParser(file, overrides).parse();
+}
+
+std::string effective_deck(const Parameters &parameters)
+{
+  Parameters copy = parameters;
+  std::vector<std::string> sections;
+  for (const Section &section : all_sections())
+    if (is_read(section.name, copy))
+      sections.push_back(section.name);
+  dealii::ParameterHandler prm;
+  Declarations declarations(prm);
+  declare_parameters(copy, sections, declarations);
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::PRM |
+                                 dealii::ParameterHandler::KeepDeclarationOrder);
+  return text.str();
+}
+
+std::string describe_parameters(const std::string &name)
+{
+  Parameters defaults;
+  dealii::ParameterHandler prm;
+  Declarations declarations(prm);
+  declare_parameters(defaults, names_of(all_sections()), declarations);
+  const auto lower = [](std::string s)
+  {
+    std::transform(s.begin(), s.end(), s.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return s;
+  };
+
+  std::string text;
+  std::vector<std::string> names;
+  for (const Declarations::Entry &entry : declarations.entries())
+  {
+    names.push_back(name_of(entry.path));
+    std::istringstream words(names.back()); // one word of a name will do
+    for (std::string word; words >> word;)
+      names.push_back(word);
+    if (lower(entry.path).find(lower(name)) != std::string::npos)
+      text += entry.path + "\n    default: " + entry.default_value +
+              "\n    range:   " + range_in_words(entry) + "\n    " + entry.documentation +
+              "\n";
+  }
+  if (text.empty())
+  {
+    const std::string near = nearest_name(name, names);
+    throw InputError({"antiform parameters: there is no parameter '" + name + "'. " +
+                      (near.empty() ? "" : "Did you mean '" + near + "'? ") +
+                      "'antiform parameters' lists them all."});
+  }
+  return text;
+}
+
+std::string parameters_markdown()
+{
+  Parameters defaults;
+  dealii::ParameterHandler prm;
+  Declarations declarations(prm);
+  declare_parameters(defaults, names_of(all_sections()), declarations);
+  std::string text =
+      "# Parameters\n\nGenerated by `antiform parameters --markdown`; do not "
+      "edit.\n\nA deck sets only what differs from the default. "
+      "`Components` alone decides what exists: a section that its\nscene does "
+      "not call for is neither read nor checked nor written to `deck.prm`.\n";
+  std::string current = "-";
+  for (const Declarations::Entry &entry : declarations.entries())
+  {
+    if (const std::string section = parent_of(entry.path); section != current)
+    {
+      current = section;
+      text += "\n## " + (section.empty() ? std::string("Above all sections") : section);
+      for (const Section &known : all_sections())
+        if (known.name == section)
+          text += "\n\nRead: " + known.read_when + ".";
+      text += "\n\n| entry | default | range | meaning |\n| --- | --- | --- | --- |\n";
+    }
+    text += "| " + name_of(entry.path) + " | " + entry.default_value + " | " +
+            range_in_words(entry) + " | " + entry.documentation + " |\n";
+  }
+  return text;
+}
+} // namespace antiform::cases

@@ -1,0 +1,176 @@
+#pragma once
+
+#include "discrete/flat_joint.h"
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+class ParameterHandler;
+}
+
+namespace antiform::cases
+{
+/// The user's error: deck, option or file. The text lists every problem, one paragraph
+/// each: file and line, entry, value, remedy. main() prints it and exits 1.
+class InputError : public std::runtime_error
+{
+public:
+  explicit InputError(const std::vector<std::string> &problems);
+  const std::vector<std::string> &problems() const { return problems_; }
+
+private:
+  std::vector<std::string> problems_;
+};
+
+/// The competent layer.
+struct LayerParameters
+{
+  LayerParameters(); ///< friction angle of the bonds: 8 degrees to the last bit
+
+  std::string representation = "grains"; ///< grains | continuum
+  double thickness = 10.;                ///< h [m]
+  std::string shape = "cosine";          ///< straight | cosine (pre-bent, straight ends)
+  double slenderness_ratio = 2.;         ///< Lambda = lambda/lambda_c of the wavelength
+  double length_ratio = 0.;              ///< L/h; 0: from the slenderness ratio
+  double amplitude_ratio = 0.5;          ///< a0/h, crest to trough (cosine)
+  double straight_end_ratio = 0.115;     ///< length of each straight end over L (cosine)
+  double young_modulus = 56e9;           ///< macroscopic E [Pa]
+  double poisson_ratio = 0.2;            ///< macroscopic plane-strain nu
+  double compressive_strength = 162e6;   ///< UCS [Pa]
+  // grains
+  double grains_across = 12.;    ///< h over mean diameter
+  double radius_ratio = 1.66;    ///< R_max/R_min
+  double installation_gap = 0.3; ///< over the mean radius
+  double grain_density = 2500.;  ///< [kg/m^3]
+  int seed = 1;
+  discrete::FlatJoint joint; ///< breakable etc.
+};
+
+/// The weak rock around the layer.
+struct MatrixParameters
+{
+  std::string representation = "continuum"; ///< continuum (bridged) | grains
+  double stiffness_contrast = 1e4;          ///< E/E0 [-]
+  double poisson_ratio = 0.2;               ///< plane strain
+  double grain_density = 2500.;             ///< [kg/m^3]
+  double burial_depth_ratio = 3.;           ///< H/h: cover above the crest
+  double base_depth_ratio = 3.;             ///< matrix below the layer over h
+  std::string base = "roller";              ///< roller | fixed | foundation via component
+  std::string interface = "cemented";       ///< cemented | frictionless
+  std::string join = "bridging domain";     ///< of grains and mesh: bridging domain
+  double mesh_modulus_ratio = 1.; ///< mesh moduli over those of the matrix grains
+  // mesh
+  double cell_size = 2.;    ///< h_FE over mean grain diameter, near the overlap
+  double largest_cell = 6.; ///< rows away from the layer, over mean grain diameter
+  int element_degree = 1;   ///< 1 or 2
+  // grains
+  double tile_size = 24.; ///< period of the tile over mean grain diameter
+  bool breakable = false;
+  double tensile_strength = 0., cohesion = 0.;
+  double tan_friction = 0., residual_friction = 0.;
+};
+
+struct BridgingParameters
+{
+  double overlap = 4.; ///< w over mean grain diameter
+  double buffer = 4.;  ///< matrix grains between layer and overlap, over mean diameter
+  std::string ramp = "automatic"; ///< automatic | linear | cubic
+  double weight_floor = 1e-3;     ///< eps
+  bool constraint = true; ///< false: the two models are not joined (negative control)
+};
+
+struct FoundationParameters
+{
+  double stiffness_ratio = 0.13; ///< k_w h/E0 [-]
+};
+
+struct SurfacePressureParameters
+{
+  double pressure = 0.; ///< [Pa]
+};
+
+struct GravityParameters
+{
+  double acceleration = 9.81; ///< downward [m/s^2]
+};
+
+/// End walls: rigid, frictionless, over the full height; both move inward.
+struct WallsParameters
+{
+  double transits_per_millistrain = 300.; ///< axial wave transits of the layer per 1e-3
+  double ramp = 20.; ///< transits over which the walls come up to speed
+};
+
+struct DampingParameters
+{
+  double coefficient = 0.7; ///< alpha of local damping
+};
+
+/// Driver and when the run ends.
+struct RunParameters
+{
+  std::string driver = "quasi-static"; ///< quasi-static | dynamic | static
+  double safety = 0.8;                 ///< step over the rigorous stable step
+  double end_shortening = 0.;          ///< 0: by the peak
+  double strain_multiple_of_peak = 2.; ///< end at this multiple of the strain at the peak
+  double longest_shortening = 0.02;    ///< give up here [-]
+  int load_steps = 10;                 ///< static driver
+};
+
+struct OutputParameters
+{
+  int samples_per_millistrain = 200; ///< lines of history.csv
+  double fields_interval = 2e-4;     ///< shortening between field files [-]
+  double checkpoint_minutes = 5.;    ///< wall time between checkpoints
+};
+
+struct Parameters
+{
+  std::string title;
+  std::vector<std::string> components;
+  LayerParameters layer;
+  MatrixParameters matrix;
+  BridgingParameters bridging;
+  FoundationParameters foundation;
+  SurfacePressureParameters surface_pressure;
+  GravityParameters gravity;
+  WallsParameters walls;
+  DampingParameters damping;
+  RunParameters run;
+  OutputParameters output;
+
+  bool has(const std::string &component) const;
+  /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
+  bool is_bridged() const;
+
+  // Derived geometry, in metres, from the ratios.
+  double layer_length() const;   ///< L: wavelength (cosine) or length (straight) [m]
+  double section_length() const; ///< straight ends included [m]
+  double grain_diameter() const; ///< mean [m]
+  double matrix_modulus() const; ///< E0 [Pa]
+
+  /// Grains of layer and matrix, from areas and the usual porosity; within 10 % [-]
+  double estimated_grains() const;
+  /// What those grains, their joints and (quasi-static) their factored stiffness take [B]
+  double estimated_memory() const;
+};
+
+/// Read a deck (with its includes) and the `--set "Section/Entry=value"` overrides.
+/// Throws InputError with every problem of syntax, name, pattern and value at once.
+Parameters read_deck(const std::string &file, const std::vector<std::string> &overrides);
+
+/// The effective parameters: sections of the listed components only, complete, so that
+/// reading the text gives the same parameters.
+std::string effective_deck(const Parameters &parameters);
+
+/// Every parameter (or those whose path contains @p name): path, default, range, meaning.
+/// Throws InputError with the nearest name when nothing matches.
+std::string describe_parameters(const std::string &name = "");
+
+/// The same as the page docs/parameters.md: a table for each section.
+std::string parameters_markdown();
+} // namespace antiform::cases

@@ -1,0 +1,457 @@
+#!/usr/bin/env python3
+"""Pictures of a run: fracture map, force chains, displacement, stress, curves.
+
+  python3 cases/pictures.py RUN_DIR [--step last|first|peak|N|all] [--out DIR]
+
+Sections are drawn deformed, at true scale, in metres. N counts the field files from 1;
+curves.png marks them. With --step all every picture gets the number in its name.
+"""
+
+import argparse
+import os
+import sys
+
+try:
+    import matplotlib
+    import numpy as np
+except ImportError as missing:
+    sys.exit(f"pictures.py: {missing}. Install python3-numpy and python3-matplotlib, and "
+             f"use the python3 that has them (this one is {sys.executable}).")
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.collections import (  # noqa: E402
+    EllipseCollection, LineCollection, PolyCollection)
+from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.patches import Patch, Rectangle  # noqa: E402
+from run_files import Run, RunError  # noqa: E402
+
+LAYER_COLOUR, MATRIX_COLOUR = "#a9a9a9", "#e4e4e4"
+MESH_COLOUR, MESH_EDGE = "#f7f3e8", "#d5cbb0"
+TENSION_CRACK, SHEAR_CRACK = "#d7191c", "black"
+COMPRESSION, TENSION = "#1f4fa8", "#1a9641"
+COMPETENT_REGION = 0
+BROKEN_IN_TENSION = 1  # code of the field "mode"; 2 is broken in shear
+
+LEFT, RIGHT, BELOW, ABOVE, BETWEEN, BESIDE = 0.8, 0.9, 0.6, 1.05, 0.7, 1.9  # [inch]
+PANEL_WIDTH, PANEL_HEIGHT = 12., 7.  # largest [inch]
+DPI = 150
+
+
+class Box:
+    """A window of the section [m]."""
+
+    def __init__(self, x0, x1, y0, y1):
+        self.x0, self.x1, self.y0, self.y1 = x0, x1, y0, y1
+        self.width, self.height = x1 - x0, y1 - y0
+
+    def grown(self, share):
+        d = share * max(self.width, self.height)
+        return Box(self.x0 - d, self.x1 + d, self.y0 - d, self.y1 + d)
+
+
+def is_layer(frame):
+    """Which grains are the competent layer's; all if the file does not say."""
+    region = frame.grains.field("region")
+    if region is None:
+        return np.ones(len(frame.grains.points), dtype=bool)
+    return region == COMPETENT_REGION
+
+
+def whole_box(frame):
+    corners = []
+    if frame.grains is not None and len(frame.grains.points):
+        r = frame.grains.field("radius_m")[:, None]
+        corners += [frame.grains.points - r, frame.grains.points + r]
+    if frame.continuum is not None:
+        corners.append(frame.continuum.deformed_quads().reshape(-1, 2))
+    if not corners:
+        raise RunError(f"Step {frame.number} has neither grains nor a mesh to draw.")
+    x, y = np.concatenate(corners).T
+    return Box(x.min(), x.max(), y.min(), y.max())
+
+
+def layer_thickness(points):
+    """Median height of the layer in slices of its length, between outer centres [m]."""
+    x, y = points.T
+    n_slices = 60
+    slice_of = np.minimum((n_slices * (x - x.min()) / np.ptp(x)).astype(int), n_slices - 1)
+    return np.median([np.ptp(y[slice_of == i]) for i in np.unique(slice_of)])
+
+
+def zoom_box(frame, whole, cracks):
+    """Four layer thicknesses around the most cracked place, or the crest without cracks;
+    None when that is most of the section anyhow."""
+    if frame.grains is None or not is_layer(frame).any():
+        return None
+    points = frame.grains.points[is_layer(frame)]
+    h = layer_thickness(points) + 2. * np.mean(frame.grains.field("radius_m"))
+    if 4. * h > 0.6 * whole.width:
+        return None
+    if cracks is not None and len(cracks["x"]):
+        x = np.sort(cracks["x"])
+        in_window = np.searchsorted(x, x + 2. * h) - np.arange(len(x))  # cracks in [x, x+2h]
+        first = int(np.argmax(in_window))
+        centre = x[first:first + in_window[first]].mean()
+    else:
+        centre = points[np.argmax(points[:, 1]), 0]
+    centre = np.clip(centre, whole.x0 + 2. * h, whole.x1 - 2. * h)
+    near = points[abs(points[:, 0] - centre) < 2. * h, 1]
+    middle = (near.min() + near.max()) / 2.
+    height = min(max(1.3 * np.ptp(near), 1.7 * h), 2.3 * h)
+    return Box(centre - 2. * h, centre + 2. * h, middle - height / 2., middle + height / 2.)
+
+
+def cracks_of(run, frame):
+    """Cracks up to this frame: place, direction, length, whether in tension; or None."""
+    if frame.cracks is not None:
+        grid = frame.cracks
+        return {"x": grid.points[:, 0], "y": grid.points[:, 1],
+                "angle": grid.field("orientation_rad"), "length": grid.field("length_m"),
+                "tension": grid.field("mode") == BROKEN_IN_TENSION}
+    if run.cracks is None:
+        return None
+    table = run.cracks
+    past = np.asarray(table["shortening"], dtype=float) <= frame.time * (1. + 1e-12)
+    return {"x": table["x_m"][past], "y": table["y_m"][past],
+            "angle": np.radians(table["orientation_deg"][past]),
+            "length": table["length_m"][past], "tension": table["mode"][past] == "tension"}
+
+
+class Figure:
+    """Panels in true proportion: long sections below each other, tall ones in a row."""
+
+    def __init__(self, run, frame, what, boxes):
+        sizes = []
+        for box in boxes:
+            width = min(PANEL_WIDTH, PANEL_HEIGHT * box.width / box.height)
+            sizes.append((width, width * box.height / box.width))
+        widths, heights = np.array(sizes).T
+        in_row = all(box.height > box.width for box in boxes)
+        if in_row:
+            left = LEFT + np.cumsum(widths + BESIDE) - widths - BESIDE
+            top = np.full(len(boxes), ABOVE)
+        else:
+            left = np.full(len(boxes), LEFT)
+            top = ABOVE + np.cumsum(heights + BETWEEN) - heights - BETWEEN
+        self.width = max((left + widths).max() + RIGHT, 8.)
+        self.height = (top + heights).max() + BELOW
+        self.figure = plt.figure(figsize=(self.width, self.height))
+        self.axes = []
+        for box, width, height, x, y in zip(boxes, widths, heights, left, top):
+            axes = self.figure.add_axes([x / self.width, 1. - (y + height) / self.height,
+                                         width / self.width, height / self.height])
+            axes.set(xlim=(box.x0, box.x1), ylim=(box.y0, box.y1), ylabel="y (m)")
+            axes.tick_params(labelsize=9)
+            axes.box = box
+            axes.points_per_metre = 72. * width / box.width
+            self.axes.append(axes)
+        for axes in self.axes if in_row else self.axes[-1:]:
+            axes.set_xlabel("x (m)")
+        self._title(run, frame, what)
+
+    def _title(self, run, frame, what):
+        title = run.summary.get("title", "")
+        self.figure.text(LEFT / self.width, 1. - 0.3 / self.height,
+                         what + (f": {title}" if title else ""), fontsize=14, weight="bold")
+        state = f"step ({frame.number}), shortening {100. * frame.time:.3g} %"
+        stress = run.stress_at(frame.time)
+        if stress is not None:
+            state += f", axial stress {stress / 1e6:.4g} MPa"
+        self.figure.text(LEFT / self.width, 1. - 0.54 / self.height, state, fontsize=11)
+
+    def legend(self, handles):
+        self.figure.legend(handles=handles, ncol=len(handles), frameon=False, fontsize=10,
+                           loc="upper left", handlelength=1.6, columnspacing=1.6,
+                           bbox_to_anchor=(LEFT / self.width, 1. - 0.64 / self.height),
+                           borderpad=0., borderaxespad=0.)
+
+    def colour_bar(self, axes, mappable, label):
+        axes.set_title(label, loc="left", fontsize=11)
+        place = axes.get_position()
+        bar = self.figure.add_axes([place.x1 + 0.12 / self.width, place.y0,
+                                    0.16 / self.width, place.height])
+        scale = self.figure.colorbar(mappable, cax=bar, extend="both")
+        scale.formatter.set_powerlimits((-2, 4))
+        scale.update_ticks()
+        bar.tick_params(labelsize=9)
+
+    def save(self, path):
+        self.figure.savefig(path, dpi=DPI)
+        plt.close(self.figure)
+        print(path)
+
+
+def in_box(box, points, margin):
+    x, y = points.T
+    return ((x > box.x0 - margin) & (x < box.x1 + margin) & (y > box.y0 - margin)
+            & (y < box.y1 + margin))
+
+
+def draw_grains(axes, frame, colours=None, values=None, norm=None, cmap=None):
+    """Grains as disks, in colours or by values; edges only where they are large enough."""
+    if frame.grains is None or not len(frame.grains.points):
+        return
+    radius = frame.grains.field("radius_m")
+    seen = in_box(axes.box, frame.grains.points, radius.max())
+    size = 2. * radius[seen]
+    is_large = axes.points_per_metre * np.mean(radius) > 3.
+    disks = EllipseCollection(size, size, np.zeros(len(size)), units="xy",
+                              offsets=frame.grains.points[seen],
+                              offset_transform=axes.transData,
+                              linewidths=0.4 if is_large else 0.,
+                              edgecolors="white" if is_large else "none")
+    if values is None:
+        disks.set_facecolor(np.asarray(colours)[seen] if np.ndim(colours) else colours)
+    else:
+        disks.set(array=values[seen], norm=norm, cmap=cmap)
+    axes.add_collection(disks)
+
+
+def draw_mesh(axes, frame, values=None, norm=None, cmap=None):
+    if frame.continuum is None:
+        return
+    quads = frame.continuum.deformed_quads()
+    cells = PolyCollection(quads)
+    if values is None:
+        cells.set(facecolor=MESH_COLOUR, edgecolor=MESH_EDGE, linewidth=0.35)
+    else:
+        cells.set(array=values, norm=norm, cmap=cmap, edgecolor="face", linewidth=0.2)
+    axes.add_collection(cells)
+
+
+def layer_colours(frame):
+    if frame.grains is None:
+        return None
+    return np.where(is_layer(frame), LAYER_COLOUR, MATRIX_COLOUR)
+
+
+def mark_zoom(figure, zoom):
+    if zoom is not None:
+        figure.axes[-2].add_patch(Rectangle((zoom.x0, zoom.y0), zoom.width, zoom.height,
+                                           fill=False, linewidth=0.9, edgecolor="#7b3294"))
+        for spine in figure.axes[-1].spines.values():
+            spine.set(edgecolor="#7b3294", linewidth=1.4)
+
+
+def fracture_map(run, frame, path):
+    cracks = cracks_of(run, frame)
+    whole = whole_box(frame)
+    zoom = zoom_box(frame, whole, cracks)
+    figure = Figure(run, frame, "Fractures", [whole.grown(0.01)] + ([zoom] if zoom else []))
+    handles = []
+    for axes in figure.axes:
+        draw_mesh(axes, frame)
+        draw_grains(axes, frame, layer_colours(frame))
+    if cracks is not None:
+        half = 0.5 * cracks["length"] * np.array([np.cos(cracks["angle"]),
+                                                  np.sin(cracks["angle"])])
+        centre = np.array([cracks["x"], cracks["y"]])
+        ends = np.stack([centre - half, centre + half]).transpose(2, 0, 1)
+        for mode, chosen, colour in (("tension", cracks["tension"], TENSION_CRACK),
+                                     ("shear", ~cracks["tension"], SHEAR_CRACK)):
+            handles.append(Line2D([], [], color=colour, linewidth=2.5,
+                                  label=f"{mode} cracks: {np.count_nonzero(chosen)}"))
+            for axes in figure.axes:
+                width = 1.1 if axes.box.width > 0.5 * whole.width else 2.
+                axes.add_collection(LineCollection(ends[chosen], colors=colour,
+                                                   linewidths=width, zorder=3))
+    if frame.grains is not None:
+        layer = is_layer(frame)
+        for chosen, colour, name in ((layer, LAYER_COLOUR, "competent layer"),
+                                     (~layer, MATRIX_COLOUR, "matrix grains")):
+            if chosen.any():
+                handles.append(Patch(facecolor=colour, label=name))
+    if frame.continuum is not None:
+        handles.append(Patch(facecolor=MESH_COLOUR, edgecolor=MESH_EDGE,
+                             label="finite elements"))
+    figure.legend(handles)
+    mark_zoom(figure, zoom)
+    figure.save(path)
+
+
+def with_prefix(x):
+    """A number with k, M or G, three digits."""
+    for factor, prefix in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if x >= factor:
+            return f"{x / factor:.3g} {prefix}"
+    return f"{x:.3g} "
+
+
+def force_chains(run, frame, path):
+    if frame.joints is None or not len(frame.joints.types):
+        return
+    force = frame.joints.cell_fields["normal_force_N"]
+    lines = frame.joints.lines()
+    full = np.percentile(abs(force), 99.5)
+    if full == 0.:
+        print(f"{path}: not drawn, no joint carries a normal force", file=sys.stderr)
+        return
+    whole = whole_box(frame)
+    zoom = zoom_box(frame, whole, cracks_of(run, frame))
+    figure = Figure(run, frame, "Force chains",
+                    [whole.grown(0.01)] + ([zoom] if zoom else []))
+    spacing = np.median(np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1))
+    for axes in figure.axes:
+        draw_mesh(axes, frame)
+        draw_grains(axes, frame, "#f0f0f0")
+        widest = max(0.55 * spacing * axes.points_per_metre, 0.6)
+        seen = in_box(axes.box, lines.mean(axis=1), spacing) & (abs(force) > 0.02 * full)
+        for sign, colour in ((-1., COMPRESSION), (1., TENSION)):
+            chosen = seen & (sign * force > 0.)
+            axes.add_collection(LineCollection(
+                lines[chosen], colors=colour, capstyle="round",
+                linewidths=widest * np.minimum(abs(force[chosen]) / full, 1.)))
+    figure.legend([
+        Line2D([], [], color=COMPRESSION, linewidth=3., label="compression"),
+        Line2D([], [], color=TENSION, linewidth=3., label="tension"),
+        Line2D([], [], color="none", label="widest lines: normal force from "
+               f"{with_prefix(full)}N per metre of depth")])
+    mark_zoom(figure, zoom)
+    figure.save(path)
+
+
+def coloured_section(figure, axes, frame, mesh_values, grain_values, label, diverging):
+    """Mesh and grains in one colour scale; the one without values stays pale."""
+    values = np.concatenate([v for v in (mesh_values, grain_values) if v is not None])
+    low, high = np.percentile(values, [0.5, 99.5])
+    if diverging:
+        high = max(abs(low), abs(high))
+        low = -high
+    if low == high:
+        low, high = low - 1., high + 1.
+    norm = matplotlib.colors.Normalize(low, high)
+    cmap = "RdBu_r" if diverging else "viridis"
+    if grain_values is None:  # where both are, what has values is on top
+        draw_grains(axes, frame, MATRIX_COLOUR)
+    draw_mesh(axes, frame, mesh_values, norm, cmap)
+    if grain_values is not None:
+        draw_grains(axes, frame, values=grain_values, norm=norm, cmap=cmap)
+    figure.colour_bar(axes, matplotlib.cm.ScalarMappable(norm, cmap), label)
+
+
+def displacement(run, frame, path):
+    mesh = grains = None
+    if frame.continuum is not None:
+        for name in ("displacement", "displacement_m"):
+            mesh = frame.continuum.cell_values(name) if mesh is None else mesh
+    if frame.grains is not None:
+        grains = frame.grains.field("displacement_m", "displacement")
+    if mesh is None and grains is None:
+        return
+    box = whole_box(frame).grown(0.01)
+    figure = Figure(run, frame, "Displacement", [box, box])
+    parts = (("magnitude of the displacement (m)", lambda u: np.linalg.norm(u[:, :2], axis=1), False),
+             ("vertical displacement, upward positive (m)", lambda u: u[:, 1], True))
+    for axes, (label, part, diverging) in zip(figure.axes, parts):
+        coloured_section(figure, axes, frame, None if mesh is None else part(mesh),
+                         None if grains is None else part(grains), label, diverging)
+    figure.save(path)
+
+
+def stress(run, frame, path):
+    """sigma_xx of the mesh and of the grains, each in a scale of its own: the layer
+    carries orders of magnitude more than its matrix."""
+    name = "stress_xx_Pa"
+    mesh = None if frame.continuum is None else frame.continuum.cell_values(name)
+    grains = None if frame.grains is None else frame.grains.field(name)
+    whole = whole_box(frame)
+    zoom = zoom_box(frame, whole, cracks_of(run, frame)) if grains is not None else None
+    label = r"$\sigma_{xx}$ of the %s (MPa), tension positive"
+    panels = []
+    if mesh is not None:
+        panels.append((whole.grown(0.01), mesh / 1e6, None, label % "finite elements"))
+    if grains is not None:
+        panels.append((whole.grown(0.01), None, grains / 1e6, label % "grains"))
+    if zoom is not None:
+        panels.append((zoom, None, grains / 1e6, label % "grains"))
+    if not panels:
+        return
+    figure = Figure(run, frame, "Horizontal stress", [p[0] for p in panels])
+    for axes, (_, mesh_values, grain_values, text) in zip(figure.axes, panels):
+        coloured_section(figure, axes, frame, mesh_values, grain_values, text, True)
+    mark_zoom(figure, zoom)
+    figure.save(path)
+
+
+def mark_steps(axes, run, x, y):
+    for number, time in enumerate(run.times, 1):
+        axes.annotate(f"({number})", (100. * time, np.interp(time, x, y)), fontsize=9,
+                      xytext=(0, 9), textcoords="offset points", ha="center", zorder=5,
+                      bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none",
+                            "alpha": 0.8})
+        axes.plot(100. * time, np.interp(time, x, y), "o", color="black", markersize=4,
+                  clip_on=False)
+
+
+def curves(run, path):
+    history = run.history
+    if not history or not len(history.get("shortening", ())):
+        print(f"{path}: not drawn, history.csv has no lines yet", file=sys.stderr)
+        return
+    x = history["shortening"]
+    has_amplitude = "fold_amplitude_m" in history
+    figure, panels = plt.subplots(2 if has_amplitude else 1, 1, sharex=True, squeeze=False,
+                                  figsize=(9., 8. if has_amplitude else 5.5),
+                                  gridspec_kw={"height_ratios": [2, 1][:1 + has_amplitude]})
+    top = panels[0, 0]
+    handles = []
+    if "axial_stress_Pa" in history:
+        y = history["axial_stress_Pa"] / 1e6
+        handles += top.plot(100. * x, y, color="#1f4fa8", linewidth=1.8, label="axial stress")
+        mark_steps(top, run, x, y)
+        top.set_ylabel("axial stress (MPa), compression +")
+        top.margins(y=0.1)
+        if y.min() >= 0.:
+            top.set_ylim(bottom=0.)
+    counts = top.twinx()
+    for name, colour, label in (("cracks_tensile", TENSION_CRACK, "tension cracks"),
+                                ("cracks_shear", SHEAR_CRACK, "shear cracks")):
+        if name in history:
+            handles += counts.plot(100. * x, history[name], color=colour, linewidth=1.2,
+                                   linestyle="--", label=label)
+    counts.set_ylabel("cracks so far")
+    counts.set_ylim(bottom=0.)
+    top.set_zorder(counts.get_zorder() + 1)  # the marks stay above the crack counts
+    top.patch.set_visible(False)
+    top.legend(handles=handles, frameon=False, fontsize=10, loc="lower center",
+               bbox_to_anchor=(0.5, 1.), ncol=3)
+    if has_amplitude:
+        panels[1, 0].plot(100. * x, history["fold_amplitude_m"], color="#7b3294")
+        panels[1, 0].set_ylabel("fold amplitude (m)")
+    for axes in panels[:, 0]:
+        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.set_xlim(0. if x.min() >= 0. else None, max(102. * x.max(), 1e-6))
+    panels[-1, 0].set_xlabel("shortening (%)")
+    figure.suptitle(run.summary.get("title", ""), fontsize=13, weight="bold")
+    figure.tight_layout()
+    figure.savefig(path, dpi=DPI)
+    plt.close(figure)
+    print(path)
+
+
+def draw_all(run, which, folder):
+    os.makedirs(folder, exist_ok=True)
+    curves(run, os.path.join(folder, "curves.png"))
+    for number in run.numbers(which):
+        frame = run.frame(number)
+        suffix = f"_{number:04d}.png" if which == "all" else ".png"
+        for draw in (fracture_map, force_chains, displacement, stress):
+            draw(run, frame, os.path.join(folder, draw.__name__ + suffix))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", metavar="RUN_DIR", help="directory of a run")
+    parser.add_argument("--step", default="last", help="last (default), first, peak, all "
+                        "or a number")
+    parser.add_argument("--out", metavar="DIR", help="where to (default: RUN_DIR)")
+    options = parser.parse_args()
+    try:
+        draw_all(Run(options.run), options.step, options.out or options.run)
+    except (RunError, OSError) as error:
+        sys.exit(f"pictures.py: {error}")
+
+
+if __name__ == "__main__":
+    main()

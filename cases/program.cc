@@ -1,0 +1,341 @@
+#include "cases/program.h"
+
+#include "cases/interrupt.h"
+#include "cases/output_directory.h"
+#include "cases/recorder.h"
+#include "cases/run_log.h"
+#include "cases/scene.h"
+#include "cases/static_run.h"
+#include "cases/summary.h"
+#include "coupling/state_file.h"
+#include "discrete/errors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+namespace antiform::cases
+{
+namespace
+{
+using Timer = std::chrono::steady_clock;
+
+double seconds_since(const Timer::time_point begin)
+{
+  return std::chrono::duration<double>(Timer::now() - begin).count();
+}
+
+void write_text(const std::string &path, const std::string &text)
+{
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file)
+    throw InputError({"'" + path +
+                      "' cannot be written: the disk is full or the folder "
+                      "is not writable. Choose another with -o."});
+}
+
+/// What a resumed run needs of the time before it.
+struct Past
+{
+  double wall_seconds = 0., cpu_seconds = 0.;
+};
+
+double cpu_seconds()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+/// One stepped run from built scene to summary.
+class SteppedRun
+{
+public:
+  SteppedRun(const Parameters &parameters, const RunOptions &options, RunLog &log)
+      : parameters_(parameters)
+      , options_(options)
+      , log_(log)
+      , begin_(Timer::now())
+  {
+  }
+
+  int operator()(const MPI_Comm communicator, coupling::StateReader *state)
+  {
+    scene_ = build(parameters_, communicator,
+                   [this](const std::string &what) { log_.line("  " + what); });
+    // The recorder is a component of the simulation but made apart: it watches all of it.
+    auto recorder = std::make_unique<Recorder>(*scene_, options_.output, options_.resume);
+    recorder_ = recorder.get();
+    scene_->simulation->add(std::move(recorder), {coupling::Stage::sample}, 0, "record",
+                            "history, cracks and fields");
+    scene_->simulation->set_sampler([this](const coupling::Clock &clock)
+                                    { return recorder_->is_due(clock); });
+    if (state)
+      visit_state(*state);
+    describe();
+    const int status = step_to_end();
+    finish(status == 0 ? "completed" : "interrupted");
+    return status;
+  }
+
+  /// Summary of a run that the physics has stopped; the last checkpoint stays.
+  void fail(const std::string &reason)
+  {
+    failure_ = reason;
+    if (scene_)
+      finish("failed");
+  }
+
+private:
+  void visit_state(coupling::StateArchive &archive)
+  {
+    if (!archive.is_loading())
+    {
+      std::string deck = effective_deck(parameters_);
+      archive.text("deck", deck);
+    }
+    double wall = past_.wall_seconds + seconds_since(begin_);
+    double cpu = past_.cpu_seconds + cpu_seconds();
+    archive.value("seconds/wall", wall);
+    archive.value("seconds/cpu", cpu);
+    if (archive.is_loading())
+      past_ = {wall, cpu};
+    scene_->visit_state(archive);
+  }
+
+  void checkpoint()
+  {
+    coupling::StateWriter writer;
+    visit_state(writer);
+    writer.commit(options_.output + "/state.h5");
+  }
+
+  void describe()
+  {
+    const Scene &s = *scene_;
+    if (s.grains)
+      log_.line(std::to_string(s.grains->state.grains.size()) + " grains, " +
+                std::to_string(s.grains->state.joints.size()) + " joints (kernel " +
+                discrete::joint_kernel_level() + ")");
+    if (s.mesh)
+      log_.line(std::to_string(s.triangulation->n_global_active_cells()) + " cells, " +
+                std::to_string(s.solid->dof_handler().n_dofs()) + " degrees of freedom" +
+                (s.bridging
+                     ? ", " + std::to_string(s.bridging->n_multipliers()) + " multipliers"
+                     : ""));
+    const double dt = s.simulation->clock().dt;
+    if (s.shortening_rate > 0.)
+      log_.line("step " + coupling::shortest_text(dt) + " s, " +
+                std::to_string(std::llround(s.transit_time / dt)) +
+                " steps an axial transit, " +
+                std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
+                " steps per 1e-3 of shortening");
+  }
+
+  int step_to_end()
+  {
+    if (!options_.resume)
+      checkpoint();
+    coupling::Simulation &simulation = *scene_->simulation;
+    const std::int64_t first_step = simulation.clock().step;
+    Timer::time_point last_checkpoint = Timer::now();
+    const Timer::time_point stepping = Timer::now();
+    while (!recorder_->finished())
+    {
+      simulation.step();
+      if (simulation.clock().step % 64 != 0)
+        continue;
+      const bool out_of_time =
+          options_.time_limit > 0. && seconds_since(begin_) > options_.time_limit;
+      if (interrupt_signal() != 0 || out_of_time)
+      {
+        checkpoint();
+        log_.line(out_of_time
+                      ? "time limit reached: checkpoint written, continue with "
+                        "--resume"
+                      : "interrupted: checkpoint written, continue with --resume");
+        return 3;
+      }
+      if (seconds_since(last_checkpoint) > 60. * parameters_.output.checkpoint_minutes)
+      {
+        checkpoint();
+        last_checkpoint = Timer::now();
+      }
+      if (log_.is_due())
+      {
+        const double elapsed = seconds_since(stepping), share = recorder_->share_done();
+        log_.progress(share, simulation.clock().step,
+                      share > start_share_ && elapsed > 0.
+                          ? elapsed * (1. - share) / (share - start_share_)
+                          : -1.,
+                      scene_->grains ? scene_->grains->state.cracks.size() : 0,
+                      static_cast<double>(simulation.clock().step - first_step) /
+                          elapsed);
+      }
+    }
+    recorder_->write_fields();
+    checkpoint();
+    log_.line("ended at " + recorder_->why_finished());
+    return 0;
+  }
+
+  void finish(const std::string &status)
+  {
+    const Scene &s = *scene_;
+    Summary summary;
+    summary.title = parameters_.title;
+    summary.version = ANTIFORM_VERSION;
+    summary.status = status;
+    summary.wall_seconds = past_.wall_seconds + seconds_since(begin_);
+    summary.cpu_seconds = past_.cpu_seconds + cpu_seconds();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    summary.peak_memory = usage.ru_maxrss * 1024;
+    summary.threads = omp_get_max_threads();
+    if (s.mesh)
+      summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(
+          s.solid->dof_handler().get_communicator()));
+    auto &sizes = summary.sizes;
+    sizes["grains"] =
+        s.grains ? static_cast<std::int64_t>(s.grains->state.grains.size()) : 0;
+    sizes["joints"] =
+        s.grains ? static_cast<std::int64_t>(s.grains->state.joints.size()) : 0;
+    sizes["cells"] =
+        s.mesh ? static_cast<std::int64_t>(s.triangulation->n_global_active_cells()) : 0;
+    sizes["dofs"] =
+        s.mesh ? static_cast<std::int64_t>(s.solid->dof_handler().n_dofs()) : 0;
+    sizes["multipliers"] =
+        s.bridging ? static_cast<std::int64_t>(s.bridging->n_multipliers()) : 0;
+    summary.steps = s.simulation ? s.simulation->clock().step : 0;
+    for (const Effect &effect : list_effects(parameters_))
+      summary.effects[effect.name] = {false, effect.reason, 0, 0.};
+    if (s.simulation)
+      for (const coupling::EffectCount &count : s.simulation->effects())
+      {
+        EffectSummary &entry = summary.effects[count.name];
+        entry.active = true;
+        entry.reason = count.reason;
+        entry.calls = std::max(entry.calls, count.calls); // grains and mesh: one effect
+        entry.seconds += count.seconds;
+      }
+    if (recorder_ != nullptr)
+      recorder_->fill(summary);
+    if (!failure_.empty())
+      summary.warnings.push_back(failure_);
+    write_summary(options_.output + "/summary.json", summary);
+    print_results(summary);
+  }
+
+  void print_results(const Summary &summary)
+  {
+    for (const auto &[name, result] : summary.results)
+    {
+      char text[128];
+      std::snprintf(text, sizeof text, "  %-34s %14.6g %s", name.c_str(), result.value,
+                    result.unit.c_str());
+      log_.line(text);
+    }
+    for (const std::string &warning : summary.warnings)
+      log_.line("warning: " + warning);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%s: %lld steps in %.1f s, energy ledger closed to %.2g",
+                  summary.status.c_str(), static_cast<long long>(summary.steps),
+                  summary.wall_seconds, summary.energy.at("closure_error"));
+    log_.line(text);
+  }
+
+  const Parameters &parameters_;
+  const RunOptions &options_;
+  RunLog &log_;
+  Timer::time_point begin_;
+  std::unique_ptr<Scene> scene_;
+  Recorder *recorder_ = nullptr;
+  Past past_;
+  double start_share_ = 0.;
+  std::string failure_;
+};
+
+/// The checkpoint is opened before anything is built or written: a damaged one, or that
+/// of another deck, costs nothing.
+std::optional<coupling::StateReader> open_state(const Parameters &parameters,
+                                                const RunOptions &options)
+{
+  if (!options.resume)
+    return {};
+  const std::string path = options.output + "/state.h5";
+  try
+  {
+    std::optional<coupling::StateReader> state;
+    state.emplace(path);
+    std::string deck;
+    state->text("deck", deck);
+    if (deck != effective_deck(parameters))
+      throw InputError(
+          {"'" + path +
+           "' is the checkpoint of another deck: its parameters differ from those asked "
+           "for now (compare with deck.prm beside it). Resume with the same deck and the "
+           "same --set, or choose another directory with -o."});
+    return state;
+  }
+  catch (const InputError &)
+  {
+    throw;
+  }
+  catch (const std::runtime_error &error)
+  {
+    throw InputError({error.what()});
+  }
+}
+
+void demand_one_rank(const Parameters &p, const MPI_Comm communicator)
+{
+  if (p.layer.representation == "grains" &&
+      dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+    throw InputError(
+        {"'Layer / Representation' is grains on " +
+         std::to_string(dealii::Utilities::MPI::n_mpi_processes(communicator)) +
+         " MPI ranks: grains run on one rank. Start without mpirun and use "
+         "--threads, or set it to continuum, which runs on any number."});
+}
+} // namespace
+
+int run(const Parameters &parameters,
+        const RunOptions &options,
+        const MPI_Comm communicator)
+{
+  demand_one_rank(parameters, communicator);
+  if (options.threads > 0)
+    omp_set_num_threads(options.threads);
+  const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+  std::optional<coupling::StateReader> state = open_state(parameters, options);
+  std::filesystem::create_directories(options.output + "/fields");
+  RunLog log(options.output + "/log.txt", first, options.resume);
+  if (first && !options.resume)
+    write_text(options.output + "/deck.prm", effective_deck(parameters));
+  log.line("antiform " ANTIFORM_VERSION ": " + parameters.title);
+
+  if (parameters.run.driver == "static")
+    return run_static(parameters, options, log, communicator);
+  SteppedRun stepped(parameters, options, log);
+  try
+  {
+    return stepped(communicator, state ? &*state : nullptr);
+  }
+  catch (const NumericalError &error)
+  {
+    log.line(std::string("stopped: ") + error.what());
+    stepped.fail(error.what());
+    return 2;
+  }
+}
+} // namespace antiform::cases

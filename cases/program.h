@@ -1,0 +1,32 @@
+#pragma once
+
+#include "cases/parameters.h"
+
+#include <mpi.h>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// What the command line asks of a run.
+struct RunOptions
+{
+  std::string deck;
+  std::string output; ///< directory; prepare_output_directory() fills an empty one
+  std::vector<std::string> overrides; ///< "Section/Entry=value"
+  int threads = 0;                    ///< of each rank; 0: OMP_NUM_THREADS decides
+  bool resume = false;                ///< from state.h5 in the output directory
+  double time_limit = 0.;             ///< wall time [s]; 0: none
+};
+
+/// Build the scene and step it to its end. Returns the exit status of the program: 0
+/// done, 1 the user's error, 2 the physics' error, 3 interrupted with a checkpoint.
+/// Collective.
+int run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator);
+
+/// Print the composed scene, its effects and why, sizes, predicted time and memory.
+/// Builds no packing. Returns the exit status. For one rank.
+int check(const Parameters &parameters, bool json, std::ostream &out);
+} // namespace antiform::cases

@@ -1,0 +1,414 @@
+#include "cases/recorder.h"
+
+#include "cases/field_output.h"
+#include "discrete/errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+using coupling::Clock;
+using coupling::Energies;
+using coupling::Stage;
+
+namespace
+{
+const std::vector<std::string> history_columns{"step",
+                                               "time_s",
+                                               "shortening",
+                                               "axial_stress_Pa",
+                                               "wall_force_N",
+                                               "matrix_share",
+                                               "cracks_tensile",
+                                               "cracks_shear",
+                                               "fold_amplitude_m",
+                                               "limb_dip_deg",
+                                               "unbalanced_ratio",
+                                               "displacement_gap_m",
+                                               "boundary_work_J",
+                                               "kinetic_J",
+                                               "strain_grains_J",
+                                               "strain_continuum_J",
+                                               "slip_J",
+                                               "damping_J",
+                                               "fracture_J"};
+
+// Small strain and rotation: beyond these the mesh's linear theory is off by several per
+// cent; twice as far the run stops.
+constexpr double rotation_limit = 5. * M_PI / 180.;
+constexpr double strain_limit = 0.1;
+} // namespace
+
+Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
+    : scene_(scene)
+    , directory_(std::move(directory))
+{
+  const Parameters &p = scene.parameters;
+  const double per_step = scene.shortening_rate * scene.simulation->clock().dt;
+  if (per_step > 0.)
+    sample_interval_ = std::max<std::int64_t>(
+        1, std::llround(1e-3 / (p.output.samples_per_millistrain * per_step)));
+  if (!resumed)
+  {
+    history_.emplace(directory_ + "/history.csv", history_columns);
+    if (scene.grains)
+      crack_table_.emplace(directory_ + "/cracks.csv");
+    strain_origin_ = 0.;
+  }
+}
+
+double Recorder::mean_uplift(const double x_reference, const double half_width) const
+{
+  double sum = 0., n = 0.;
+  if (scene_.grains)
+  {
+    const discrete::Grains &grains = scene_.grains->state.grains;
+    for (std::size_t i = 0; i < grains.size(); ++i)
+      if (grains.region[i] == layer_region &&
+          std::abs(grains.reference_x[i] - x_reference) <= half_width)
+      {
+        sum += grains.displacement_y[i];
+        n += 1.;
+      }
+  }
+  else
+  {
+    const SectionGeometry &g = scene_.geometry;
+    const double eps = 1e-9 * g.thickness();
+    for (const auto dof : scene_.solid->locally_owned())
+    {
+      const dealii::Point<2> x = scene_.solid->support_point(dof);
+      if (scene_.solid->component(dof) == 1 &&
+          std::abs(x[0] - x_reference) <= half_width && x[1] <= g.layer_top(x[0]) + eps &&
+          x[1] >= g.layer_bottom(x[0]) - eps)
+      {
+        sum += scene_.mesh->displacement(dof);
+        n += 1.;
+      }
+    }
+    const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
+    sum = dealii::Utilities::MPI::sum(sum, comm);
+    n = dealii::Utilities::MPI::sum(n, comm);
+  }
+  return n > 0. ? sum / n : 0.;
+}
+
+Recorder::Sample Recorder::measure() const
+{
+  const SectionGeometry &g = scene_.geometry;
+  Sample sample;
+  sample.shortening = scene_.shortening();
+  if (scene_.wall_motion != nullptr)
+  {
+    double layer = 0., matrix = scene_.wall_motion->mesh_reaction();
+    if (scene_.grains)
+    {
+      layer = scene_.wall_motion->grain_reaction(layer_region);
+      matrix += scene_.wall_motion->grain_reaction(matrix_region);
+    }
+    sample.wall_force = layer + matrix;
+    sample.axial_stress = layer / g.thickness();
+    sample.matrix_share = sample.wall_force != 0. ? matrix / sample.wall_force : 0.;
+  }
+  // Crest over the two troughs, each a window of one cell of a fortieth of the wave.
+  const double half_width = std::max(1.5 * g.diameter(), g.wavelength() / 40.);
+  const double trough = std::min(0.5 * g.wavelength(), 0.5 * g.length() - half_width);
+  const double crest_uplift = mean_uplift(0., half_width);
+  const double trough_uplift =
+      0.5 * (mean_uplift(-trough, half_width) + mean_uplift(trough, half_width));
+  sample.fold_amplitude = g.amplitude() + crest_uplift - trough_uplift;
+  // Dip between an eighth and three eighths of the wave, where the limb is straight.
+  const double inner = 0.25 * trough, outer = 0.75 * trough;
+  double steepest = 0.;
+  for (const double side : {-1., 1.})
+  {
+    const double rise = g.axis(side * inner) + mean_uplift(side * inner, half_width) -
+                        g.axis(side * outer) - mean_uplift(side * outer, half_width);
+    steepest = std::max(steepest, std::atan(rise / (outer - inner)));
+  }
+  sample.limb_dip = steepest * 180. / M_PI;
+  return sample;
+}
+
+void Recorder::run(const Stage, const Clock &clock)
+{
+  acted_ = clock.sample_due;
+  if (!acted_)
+    return;
+  const Sample sample = measure();
+  energies_ = scene_.simulation->energies();
+  if (strain_.empty())
+    strain_origin_ = energies_.strain_grains + energies_.strain_continuum;
+  ratio_ = scene_.constrained->unbalanced_ratio();
+  if (!std::isfinite(energies_.stored_and_spent()) || !std::isfinite(sample.wall_force))
+    throw NumericalError("simulation",
+                         "energy or wall force is not a number: the run is unstable. "
+                         "Lower 'Run / Step safety'",
+                         energies_.kinetic, 0., clock.step);
+  close_ledger(energies_);
+  append_cracks();
+  append_history(clock, sample);
+  strain_.push_back(sample.shortening);
+  stress_.push_back(sample.axial_stress);
+  total_.push_back(sample.wall_force);
+  if (sample.axial_stress > peak_stress_)
+  {
+    peak_stress_ = sample.axial_stress;
+    peak_strain_ = sample.shortening;
+    peak_share_ = sample.matrix_share;
+    peak_sample_ = static_cast<std::int64_t>(strain_.size());
+  }
+  last_ = sample;
+  if (scene_.mesh)
+    watch_mesh(clock);
+  if (sample.shortening >= next_field_)
+  {
+    write_fields();
+    next_field_ += scene_.parameters.output.fields_interval;
+  }
+  look_for_end(sample);
+}
+
+void Recorder::close_ledger(const Energies &energies)
+{
+  const double sum = energies.stored_and_spent() - strain_origin_;
+  largest_gap_ = std::max(largest_gap_, std::abs(energies.boundary_work - sum));
+  largest_terms_ = std::max(largest_terms_, energies.magnitude() - strain_origin_);
+}
+
+void Recorder::append_history(const Clock &clock, const Sample &sample)
+{
+  const double gap = scene_.bridging
+                         ? scene_.bridging->displacement_gap(scene_.grains->state.grains,
+                                                             scene_.mesh->displacement)
+                         : 0.;
+  history_->append(std::vector<double>{
+      static_cast<double>(clock.step), clock.time, sample.shortening, sample.axial_stress,
+      sample.wall_force, sample.matrix_share, static_cast<double>(n_tensile_),
+      static_cast<double>(n_shear_), sample.fold_amplitude, sample.limb_dip, ratio_, gap,
+      energies_.boundary_work, energies_.kinetic, energies_.strain_grains,
+      energies_.strain_continuum, energies_.slip, energies_.damping, energies_.fracture});
+}
+
+void Recorder::append_cracks()
+{
+  if (!scene_.grains)
+    return;
+  coupling::GrainState &state = scene_.grains->state;
+  for (; state.cracks_recorded < state.cracks.size(); ++state.cracks_recorded)
+  {
+    const discrete::Crack &crack = state.cracks[state.cracks_recorded];
+    if (state.cracks_recorded == 0)
+    {
+      first_crack_strain_ = scene_.shortening();
+      first_crack_stress_ = stress_.empty() ? 0. : stress_.back();
+    }
+    ++(crack.mode == discrete::Bond::broken_in_tension ? n_tensile_ : n_shear_);
+    crack_table_->append(crack, scene_.shortening());
+  }
+}
+
+void Recorder::watch_mesh(const Clock &clock)
+{
+  for (const auto &cell : scene_.solid->cell_states(scene_.mesh->displacement))
+  {
+    if (cell.weight < 0.2)
+      continue; // where the mesh has little weight its strain says nothing
+    largest_rotation_ = std::max(largest_rotation_, std::abs(cell.rotation));
+    const double half_difference = 0.5 * (cell.strain[0] - cell.strain[1]);
+    const double radius = std::hypot(half_difference, 0.5 * cell.strain[2]);
+    const double mean = 0.5 * (cell.strain[0] + cell.strain[1]);
+    largest_strain_ = std::max(largest_strain_, std::abs(mean) + radius);
+  }
+  const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
+  largest_rotation_ = dealii::Utilities::MPI::max(largest_rotation_, comm);
+  largest_strain_ = dealii::Utilities::MPI::max(largest_strain_, comm);
+  if (largest_rotation_ > 2. * rotation_limit)
+    throw NumericalError(
+        "mesh",
+        "the mesh has turned by more than 10 degrees, beyond small-strain "
+        "theory: end the run earlier (Run / End shortening); rotation [rad]",
+        largest_rotation_, 2. * rotation_limit, clock.step);
+  if (largest_strain_ > 2. * strain_limit)
+    throw NumericalError("mesh",
+                         "the mesh is strained by more than 20 %, beyond small-strain "
+                         "theory: end the run earlier (Run / End shortening); strain",
+                         largest_strain_, 2. * strain_limit, clock.step);
+}
+
+void Recorder::look_for_end(const Sample &sample)
+{
+  const RunParameters &run = scene_.parameters.run;
+  if (run.end_shortening > 0.)
+  {
+    if (sample.shortening >= run.end_shortening)
+      why_finished_ = "the shortening asked for";
+    return;
+  }
+  // A peak counts when a fair stretch of the curve has stayed below it.
+  const auto n = static_cast<std::int64_t>(strain_.size());
+  if (n - peak_sample_ >= 40 &&
+      sample.shortening >= run.strain_multiple_of_peak * peak_strain_)
+    why_finished_ = "the wanted multiple of the strain at the peak";
+  else if (sample.shortening >= run.longest_shortening)
+    why_finished_ = "the longest shortening, without a peak";
+}
+
+double Recorder::share_done() const
+{
+  const RunParameters &run = scene_.parameters.run;
+  if (run.end_shortening > 0.)
+    return last_.shortening / run.end_shortening;
+  const auto n = static_cast<std::int64_t>(strain_.size());
+  if (n - peak_sample_ >= 10 && peak_strain_ > 0.)
+    return std::min(1., last_.shortening / (run.strain_multiple_of_peak * peak_strain_));
+  return last_.shortening / run.longest_shortening;
+}
+
+void Recorder::write_fields()
+{
+  const double shortening = scene_.shortening();
+  field_shortening_.push_back(shortening);
+  write_field_files(scene_, directory_, field_shortening_);
+}
+
+double Recorder::section_stiffness() const
+{
+  // Least squares through the elastic part: up to half of the first crack's or the peak's
+  // strain.
+  const double limit =
+      0.5 * (first_crack_strain_ > 0. ? std::min(first_crack_strain_, peak_strain_)
+                                      : peak_strain_);
+  double xx = 0., xy = 0., x = 0., y = 0., n = 0.;
+  for (std::size_t k = 0; k < strain_.size() && strain_[k] <= limit; ++k)
+  {
+    if (strain_[k] < 0.2 * limit)
+      continue; // the walls are coming up to speed
+    xx += strain_[k] * strain_[k];
+    xy += strain_[k] * total_[k];
+    x += strain_[k];
+    y += total_[k];
+    n += 1.;
+  }
+  const double height = scene_.geometry.surface() - scene_.geometry.base();
+  return n >= 2. ? (n * xy - x * y) / (n * xx - x * x) / height : 0.;
+}
+
+void Recorder::fill(Summary &summary) const
+{
+  const SectionGeometry &g = scene_.geometry;
+  auto &results = summary.results;
+  results["shortening"] = {last_.shortening, "-"};
+  results["peak_stress"] = {peak_stress_, "Pa"};
+  results["strain_at_peak"] = {peak_strain_, "-"};
+  results["section_stiffness"] = {section_stiffness(), "Pa"};
+  results["matrix_share_at_peak"] = {peak_share_, "-"};
+  results["fold_amplitude"] = {last_.fold_amplitude, "m"};
+  results["limb_dip"] = {last_.limb_dip, "deg"};
+  results["unbalanced_ratio"] = {ratio_, "-"};
+  if (scene_.grains)
+  {
+    const auto &cracks = scene_.grains->state.cracks;
+    results["crack_count"] = {static_cast<double>(cracks.size()), "-"};
+    results["cracks_tensile"] = {static_cast<double>(n_tensile_), "-"};
+    results["cracks_shear"] = {static_cast<double>(n_shear_), "-"};
+    double near_walls = 0.;
+    for (const discrete::Crack &crack : cracks)
+      if (std::min(crack.reference_place.x - g.x_min(),
+                   g.x_max() - crack.reference_place.x) < g.thickness())
+        near_walls += 1.;
+    results["cracks_near_walls"] = {near_walls, "-"};
+    if (!cracks.empty())
+    {
+      const Vec2 place = cracks.front().reference_place;
+      results["crack_initiation_stress"] = {first_crack_stress_, "Pa"};
+      results["first_crack_x"] = {place.x, "m"};
+      results["first_crack_above_axis"] = {place.y - g.axis(place.x), "m"};
+      results["first_crack_is_tensile"] = {
+          cracks.front().mode == discrete::Bond::broken_in_tension ? 1. : 0., "-"};
+    }
+    const auto &would = scene_.grains->state.joints.would_break;
+    const auto n_would = std::count(would.begin(), would.end(), 1);
+    results["unbreakable_joints_over_strength"] = {static_cast<double>(n_would), "-"};
+  }
+  summary.energy = {
+      {"boundary_work", energies_.boundary_work},
+      {"kinetic", energies_.kinetic},
+      {"strain_grains", energies_.strain_grains},
+      {"strain_continuum", energies_.strain_continuum},
+      {"slip", energies_.slip},
+      {"damping", energies_.damping},
+      {"fracture", energies_.fracture},
+      {"closure_error", largest_terms_ > 0. ? largest_gap_ / largest_terms_ : 0.}};
+  if (largest_rotation_ > rotation_limit)
+    summary.warnings.push_back("the mesh turned by up to " +
+                               std::to_string(largest_rotation_ * 180. / M_PI) +
+                               " degrees; small-strain theory holds to about 5");
+  if (largest_strain_ > strain_limit)
+    summary.warnings.push_back("the mesh was strained by up to " +
+                               std::to_string(100. * largest_strain_) +
+                               " %; small-strain theory holds to about 10");
+}
+
+void Recorder::visit_state(coupling::StateArchive &archive)
+{
+  archive.array("recorder/strain", strain_);
+  archive.array("recorder/stress", stress_);
+  archive.array("recorder/total", total_);
+  archive.array("recorder/field_shortening", field_shortening_);
+  std::vector<std::int64_t> integers{peak_sample_, n_tensile_, n_shear_, 0, 0};
+  if (!archive.is_loading())
+  {
+    integers[3] = history_->offset();
+    integers[4] = crack_table_ ? crack_table_->offset() : 0;
+  }
+  archive.array("recorder/integers", integers);
+  peak_sample_ = integers[0];
+  n_tensile_ = integers[1];
+  n_shear_ = integers[2];
+  const std::vector<double *> members{&peak_stress_,
+                                      &peak_strain_,
+                                      &peak_share_,
+                                      &first_crack_strain_,
+                                      &first_crack_stress_,
+                                      &next_field_,
+                                      &strain_origin_,
+                                      &largest_gap_,
+                                      &largest_terms_,
+                                      &largest_rotation_,
+                                      &largest_strain_,
+                                      &ratio_,
+                                      &energies_.boundary_work,
+                                      &energies_.kinetic,
+                                      &energies_.strain_grains,
+                                      &energies_.strain_continuum,
+                                      &energies_.slip,
+                                      &energies_.damping,
+                                      &energies_.fracture,
+                                      &last_.shortening,
+                                      &last_.axial_stress,
+                                      &last_.wall_force,
+                                      &last_.matrix_share,
+                                      &last_.fold_amplitude,
+                                      &last_.limb_dip};
+  std::vector<double> values;
+  for (const double *member : members)
+    values.push_back(*member);
+  archive.array("recorder/values", values);
+  if (!archive.is_loading())
+    return;
+  if (values.size() != members.size())
+    throw std::runtime_error("the checkpoint is of another version of the program");
+  for (std::size_t k = 0; k < members.size(); ++k)
+    *members[k] = values[k];
+  history_.emplace(
+      coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[3]));
+  if (scene_.grains)
+  {
+    crack_table_.emplace(directory_ + "/cracks.csv", integers[4]);
+    scene_.grains->state.cracks_recorded =
+        static_cast<std::size_t>(n_tensile_ + n_shear_);
+  }
+}
+} // namespace antiform::cases

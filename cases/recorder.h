@@ -1,0 +1,84 @@
+#pragma once
+
+#include "cases/scene.h"
+#include "cases/summary.h"
+#include "coupling/output/tables.h"
+#include "coupling/output/vtu.h"
+#include "coupling/simulation.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// Watches a run: history, cracks, fields, peak, energy ledger, warnings. Reads the scene
+/// and changes nothing in it. Everything that a resumed run needs passes through
+/// visit_state().
+class Recorder : public coupling::Component
+{
+public:
+  /// \param resumed tables and field files of the directory are continued, not replaced
+  ///                (visit_state() must be called before the first step then)
+  Recorder(Scene &scene, std::string directory, bool resumed);
+
+  void run(coupling::Stage stage, const coupling::Clock &clock) override;
+  bool acted() const override { return acted_; }
+  void visit_state(coupling::StateArchive &archive) override;
+
+  bool is_due(const coupling::Clock &clock) const
+  {
+    return clock.step % sample_interval_ == 0;
+  }
+  /// The deck's end has been reached; why() says which.
+  bool finished() const { return !why_finished_.empty(); }
+  const std::string &why_finished() const { return why_finished_; }
+  /// Share of the run done, as far as it can be told [-].
+  double share_done() const;
+
+  /// Fields of the present state, at the end of a run.
+  void write_fields();
+  void fill(Summary &summary) const;
+
+private:
+  struct Sample
+  {
+    double shortening = 0., axial_stress = 0., wall_force = 0., matrix_share = 0.;
+    double fold_amplitude = 0., limb_dip = 0.;
+  };
+  Sample measure() const;
+  double mean_uplift(double x_reference, double half_width) const;
+  void append_history(const coupling::Clock &clock, const Sample &sample);
+  void append_cracks();
+  void close_ledger(const coupling::Energies &energies);
+  void watch_mesh(const coupling::Clock &clock);
+  void look_for_end(const Sample &sample);
+  void write_grain_fields(const std::string &number, double shortening);
+  double section_stiffness() const;
+
+  Scene &scene_;
+  std::string directory_;
+  std::int64_t sample_interval_ = 1;
+  bool acted_ = false;
+  std::optional<coupling::Table> history_;
+  std::optional<coupling::CrackTable> crack_table_;
+
+  // State.
+  std::vector<double> strain_, stress_,
+      total_; ///< samples: shortening, axial stress, force
+  double peak_stress_ = 0., peak_strain_ = 0., peak_share_ = 0.;
+  double first_crack_strain_ = 0., first_crack_stress_ = 0.;
+  std::int64_t peak_sample_ = 0, n_tensile_ = 0, n_shear_ = 0;
+  double next_field_ = 0.;
+  std::vector<double> field_shortening_;
+  double strain_origin_ = 0.;
+  double largest_gap_ = 0., largest_terms_ = 0.;       ///< of the ledger [J]
+  double largest_rotation_ = 0., largest_strain_ = 0.; ///< of the mesh
+  double ratio_ = 0.;
+  coupling::Energies energies_;
+  Sample last_;
+  std::string why_finished_;
+};
+} // namespace antiform::cases

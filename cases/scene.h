@@ -1,0 +1,65 @@
+#pragma once
+
+#include "cases/effects.h"
+#include "cases/geometry.h"
+#include "cases/grain_section.h"
+#include "cases/parameters.h"
+#include "continuum/elastic_solid.h"
+#include "coupling/bridging_domain.h"
+#include "coupling/grain_components.h"
+#include "coupling/joining_components.h"
+#include "coupling/mesh_components.h"
+#include "coupling/simulation.h"
+
+#include <mpi.h>
+
+#include <memory>
+#include <optional>
+
+namespace antiform::cases
+{
+/// What a deck has been built into: the state, and the simulation that moves it. Absent
+/// parts are empty.
+struct Scene
+{
+  explicit Scene(const Parameters &p)
+      : parameters(p)
+      , geometry(p)
+  {
+  }
+
+  Parameters parameters;
+  SectionGeometry geometry;
+
+  std::optional<GrainSection> grains;
+  discrete::Contacts contacts;
+  std::vector<discrete::Wall> walls;
+
+  std::unique_ptr<dealii::parallel::distributed::Triangulation<2>> triangulation;
+  std::unique_ptr<continuum::ElasticSolid> solid;
+  std::optional<coupling::MeshState> mesh;
+  std::unique_ptr<coupling::BridgingDomain> bridging;
+
+  std::vector<double> mass_weight; ///< mu of each grain; empty: 1
+
+  std::unique_ptr<coupling::Simulation> simulation;
+  coupling::Walls *wall_motion = nullptr;
+  coupling::ConstrainedForces *constrained = nullptr;
+  bool breakage_components = false; ///< friction, contacts and search have joined
+
+  double dt0 = 0.;             ///< of density scaling [s]
+  double transit_time = 0.;    ///< of an axial wave along the layer [s]
+  double shortening_rate = 0.; ///< at full speed [1/s]
+
+  double shortening() const; ///< closure over the section's length [-]
+  /// Friction, contacts and search, which the first broken bond calls for.
+  void add_breakage_components();
+  /// Components' arrays; joins the breakage components first where the state has them.
+  void visit_state(coupling::StateArchive &archive);
+};
+
+/// Build the scene of a checked deck. Throws InputError for what only the packing can
+/// tell (a Poisson ratio out of reach), NumericalError for a constraint that is singular.
+std::unique_ptr<Scene>
+build(const Parameters &parameters, MPI_Comm communicator, const Progress &progress);
+} // namespace antiform::cases

@@ -1,0 +1,158 @@
+#include "cases/static_run.h"
+
+#include "cases/recorder.h"
+#include "cases/scene.h"
+#include "cases/summary.h"
+#include "continuum/foundation.h"
+#include "continuum/loads.h"
+#include "continuum/section_mesh.h"
+#include "continuum/static_solver.h"
+#include "coupling/output/mesh_vtu.h"
+#include "coupling/output/tables.h"
+#include "discrete/errors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace antiform::cases
+{
+namespace
+{
+/// Sides follow the walls, the base is held as the deck says.
+continuum::DirichletValues supports(const Scene &scene,
+                                    const continuum::ElasticSolid &solid,
+                                    const double shortening)
+{
+  const Parameters &p = scene.parameters;
+  const double move = 0.5 * shortening * scene.geometry.length();
+  const auto constant = [](const double value)
+  { return [value](const dealii::Point<2> &) { return value; }; };
+  continuum::DirichletValues values;
+  if (!p.has("foundation"))
+  {
+    continuum::prescribe(solid, continuum::boundary::bottom, 1, constant(0.), values);
+    if (p.has("matrix") && p.matrix.base == "fixed")
+      continuum::prescribe(solid, continuum::boundary::bottom, 0, constant(0.), values);
+  }
+  continuum::prescribe(solid, continuum::boundary::left, 0, constant(move), values);
+  continuum::prescribe(solid, continuum::boundary::right, 0, constant(-move), values);
+  return values;
+}
+} // namespace
+
+int run_static(const Parameters &p,
+               const RunOptions &options,
+               RunLog &log,
+               const MPI_Comm communicator)
+{
+  if (p.layer.representation == "grains")
+    throw InputError(
+        {"'Run / Driver' is static with 'Layer / Representation' grains: the static "
+         "driver "
+         "solves the elastic continuum. Use the driver quasi-static, or set the "
+         "representation to continuum."});
+  const auto begin = std::chrono::steady_clock::now();
+  const std::unique_ptr<Scene> scene =
+      build(p, communicator, [&](const std::string &what) { log.line("  " + what); });
+  continuum::ElasticSolid &solid = *scene->solid;
+  continuum::Vector load = solid.make_vector();
+  if (p.has("gravity"))
+  {
+    dealii::Tensor<1, 2> down;
+    down[1] = -p.gravity.acceleration;
+    load += continuum::gravity(solid, down);
+  }
+  if (p.has("surface pressure"))
+    load += continuum::pressure(solid, {continuum::boundary::top},
+                                p.surface_pressure.pressure);
+  if (p.has("foundation"))
+    solid.add_to_stiffness(continuum::winkler_foundation(
+        solid, {continuum::boundary::bottom},
+        p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness));
+
+  const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+  std::optional<coupling::Table> history;
+  if (first)
+    history.emplace(options.output + "/history.csv",
+                    std::vector<std::string>{"step", "shortening", "wall_force_N",
+                                             "strain_continuum_J"});
+  const double end =
+      p.run.end_shortening > 0. ? p.run.end_shortening : p.run.longest_shortening;
+  const continuum::StaticSolver::Options solver_options;
+  continuum::StaticSolver solver(solid, solid.stiffness(), supports(*scene, solid, 0.),
+                                 solver_options);
+  continuum::Vector &u = scene->mesh->displacement;
+  unsigned int iterations = 0;
+  double force = 0., energy = 0.;
+  std::vector<coupling::PvdEntry> fields;
+  for (int step = 1; step <= p.run.load_steps; ++step)
+  {
+    const double shortening = end * step / p.run.load_steps;
+    const continuum::DirichletValues values = supports(*scene, solid, shortening);
+    solver.set_values(values);
+    iterations += solver.solve(load, u);
+    // Reaction of the left wall: K u - f on its dofs.
+    continuum::Vector residual = solid.make_vector();
+    solid.add_internal_force(u, residual);
+    residual += load;
+    double reaction = 0.;
+    for (const auto &[dof, value] : values)
+      if (solid.locally_owned().is_element(dof) && solid.component(dof) == 0 &&
+          solid.support_point(dof)[0] < scene->geometry.x_min() + 1e-6)
+        reaction -= residual(dof);
+    force = dealii::Utilities::MPI::sum(reaction, communicator);
+    energy = solid.strain_energy(u);
+    if (first)
+      history->append(
+          std::vector<double>{static_cast<double>(step), shortening, force, energy});
+    char file[64];
+    std::snprintf(file, sizeof file, "fields/continuum_%04d.vtu", step);
+    coupling::write_mesh_vtu(options.output + "/" + file, solid, u);
+    fields.push_back({shortening, "continuum", file});
+    if (first)
+      coupling::write_pvd(options.output + "/fields.pvd", fields);
+  }
+
+  Summary summary;
+  summary.title = p.title;
+  summary.version = ANTIFORM_VERSION;
+  summary.status = "completed";
+  summary.wall_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  summary.peak_memory = usage.ru_maxrss * 1024;
+  summary.cpu_seconds =
+      static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
+  summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
+  summary.threads = omp_get_max_threads();
+  summary.sizes = {
+      {"grains", 0},
+      {"joints", 0},
+      {"cells", static_cast<std::int64_t>(scene->triangulation->n_global_active_cells())},
+      {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
+      {"multipliers", 0}};
+  summary.steps = summary.solves = p.run.load_steps;
+  const double height = scene->geometry.surface() - scene->geometry.base();
+  summary.results = {{"shortening", {end, "-"}},
+                     {"wall_force", {force, "N"}},
+                     {"section_stiffness", {force / end / height, "Pa"}},
+                     {"solver_iterations", {static_cast<double>(iterations), "-"}}};
+  summary.energy = {{"strain_continuum", energy}};
+  for (const Effect &effect : list_effects(p))
+    summary.effects[effect.name] = {
+        effect.state == Effect::State::present && effect.name != "damping", effect.reason,
+        effect.name == "mesh" ? p.run.load_steps : 0, 0.};
+  if (first)
+    write_summary(options.output + "/summary.json", summary);
+  log.line("completed: " + std::to_string(p.run.load_steps) + " solves, wall force " +
+           coupling::shortest_text(force) + " N");
+  return 0;
+}
+} // namespace antiform::cases

@@ -1,0 +1,64 @@
+#include "cases/summary.h"
+
+#include "coupling/output/whole_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace antiform::cases
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+double finite(const std::string &path, const std::string &entry, const double x)
+{
+  if (!std::isfinite(x))
+    throw std::runtime_error("'" + path + "' is not written: '" + entry + "' is " +
+                             (std::isnan(x) ? "not a number" : "infinite") +
+                             ". The run has no such result; look at history.csv and "
+                             "log.txt for the step where it was lost.");
+  return x;
+}
+} // namespace
+
+void write_summary(const std::string &path, const Summary &summary)
+{
+  if (summary.status != "completed" && summary.status != "failed" &&
+      summary.status != "interrupted")
+    throw std::logic_error("The status of a run cannot be '" + summary.status + "'.");
+
+  Json json;
+  json["title"] = summary.title;
+  json["version"] = summary.version;
+  json["status"] = summary.status;
+  json["warnings"] = summary.warnings;
+  json["wall_seconds"] = finite(path, "wall_seconds", summary.wall_seconds);
+  json["cpu_seconds"] = finite(path, "cpu_seconds", summary.cpu_seconds);
+  json["peak_memory_bytes"] = summary.peak_memory;
+  json["ranks"] = summary.ranks;
+  json["threads"] = summary.threads;
+  json["sizes"] = summary.sizes;
+  json["steps"] = summary.steps;
+  json["solves"] = summary.solves;
+  json["results"] = Json::object();
+  for (const auto &[name, result] : summary.results)
+    json["results"][name] = {{"value", finite(path, "results/" + name, result.value)},
+                             {"unit", result.unit}};
+  json["energy"] = Json::object();
+  for (const auto &[name, value] : summary.energy)
+    json["energy"][name] = finite(path, "energy/" + name, value);
+  json["effects"] = Json::object();
+  for (const auto &[name, effect] : summary.effects)
+    json["effects"][name] = {
+        {"active", effect.active},
+        {"reason", effect.reason},
+        {"calls", effect.calls},
+        {"seconds", finite(path, "effects/" + name + "/seconds", effect.seconds)}};
+  // A title may come in any encoding; JSON is UTF-8.
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
+  coupling::replace_file(path, text + '\n');
+}
+} // namespace antiform::cases
