@@ -3,8 +3,8 @@
 
   python3 cases/pictures.py RUN_DIR [--step last|first|peak|N|all] [--out DIR]
 
-Sections are drawn deformed, at true scale, in metres. N counts the field files from 1;
-curves.png marks them. With --step all every picture gets the number in its name.
+Sections are drawn deformed, at true scale, in metres. N is the number in the names
+of the field files; curves.png marks them. With --step all every picture gets the number in its name.
 """
 
 import argparse
@@ -194,7 +194,7 @@ def draw_grains(axes, frame, colours=None, values=None, norm=None, cmap=None):
     radius = frame.grains.field("radius_m")
     seen = in_box(axes.box, frame.grains.points, radius.max())
     size = 2. * radius[seen]
-    is_large = axes.points_per_metre * np.mean(radius) > 3.
+    is_large = axes.points_per_metre * np.mean(radius) > 6.
     disks = EllipseCollection(size, size, np.zeros(len(size)), units="xy",
                               offsets=frame.grains.points[seen],
                               offset_transform=axes.transData,
@@ -374,7 +374,7 @@ def stress(run, frame, path):
 
 
 def mark_steps(axes, run, x, y):
-    for number, time in enumerate(run.times, 1):
+    for number, time in zip(run.step_numbers, run.times):
         axes.annotate(f"({number})", (100. * time, np.interp(time, x, y)), fontsize=9,
                       xytext=(0, 9), textcoords="offset points", ha="center", zorder=5,
                       bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none",
@@ -395,24 +395,27 @@ def curves(run, path):
                                   gridspec_kw={"height_ratios": [2, 1][:1 + has_amplitude]})
     top = panels[0, 0]
     handles = []
-    if "axial_stress_Pa" in history:
-        y = history["axial_stress_Pa"] / 1e6
-        handles += top.plot(100. * x, y, color="#1f4fa8", linewidth=1.8, label="axial stress")
-        mark_steps(top, run, x, y)
-        top.set_ylabel("axial stress (MPa), compression +")
-        top.margins(y=0.1)
-        if y.min() >= 0.:
-            top.set_ylim(bottom=0.)
-    counts = top.twinx()
-    for name, colour, label in (("cracks_tensile", TENSION_CRACK, "tension cracks"),
-                                ("cracks_shear", SHEAR_CRACK, "shear cracks")):
+    for name, unit, label in (("axial_stress_Pa", "MPa", "axial stress"),
+                              ("wall_force_N", "MN/m", "force of the walls")):
         if name in history:
+            y = history[name] / 1e6
+            handles += top.plot(100. * x, y, color="#1f4fa8", linewidth=1.8, label=label)
+            mark_steps(top, run, x, y)
+            top.set_ylabel(f"{label} ({unit}), compression +")
+            top.margins(y=0.1)
+            if y.min() >= 0.:
+                top.set_ylim(bottom=0.)
+            break
+    if "cracks_tensile" in history:
+        counts = top.twinx()
+        for name, colour, label in (("cracks_tensile", TENSION_CRACK, "tension cracks"),
+                                    ("cracks_shear", SHEAR_CRACK, "shear cracks")):
             handles += counts.plot(100. * x, history[name], color=colour, linewidth=1.2,
                                    linestyle="--", label=label)
-    counts.set_ylabel("cracks so far")
-    counts.set_ylim(bottom=0.)
-    top.set_zorder(counts.get_zorder() + 1)  # the marks stay above the crack counts
-    top.patch.set_visible(False)
+        counts.set_ylabel("cracks so far")
+        counts.set_ylim(0., max(1.05 * counts.dataLim.y1, 1.))
+        top.set_zorder(counts.get_zorder() + 1)  # the marks stay above the crack counts
+        top.patch.set_visible(False)
     top.legend(handles=handles, frameon=False, fontsize=10, loc="lower center",
                bbox_to_anchor=(0.5, 1.), ncol=3)
     if has_amplitude:

@@ -79,8 +79,11 @@ public:
                             "history, cracks and fields");
     scene_->simulation->set_sampler([this](const coupling::Clock &clock)
                                     { return recorder_->is_due(clock); });
-    if (state)
+    if (state != nullptr)
+    {
       visit_state(*state);
+      state->expect_all_read();
+    }
     describe();
     const int status = step_to_end();
     finish(status == 0 ? "completed" : "interrupted");

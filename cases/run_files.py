@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import re
 import xml.etree.ElementTree as ElementTree
 import zlib
 
@@ -160,7 +161,7 @@ class Frame:
     """All fields that were written at one time; what a run does not have is None."""
 
     def __init__(self, number, time, files):
-        self.number = number  # 1 is the first
+        self.number = number  # as in the files' names
         self.time = time
         grids = {group: Grid(file) for group, file in files.items()}
         self.grains = grids.get("grains")
@@ -181,6 +182,7 @@ class Run:
         self.cracks = self._read_table_if_there("cracks.csv")
         self._files = self._read_index()  # {time: {group: path}}
         self.times = sorted(self._files)
+        self.step_numbers = [self._number_of(time) for time in self.times]
 
     def _path(self, name):
         return os.path.join(self.directory, name)
@@ -211,27 +213,36 @@ class Run:
                 self._path(entry.get("file")))
         return files
 
+    def _number_of(self, time):
+        """The number in the names of the files of one time: fields/grains_0012.vtu, 12."""
+        name = next(iter(self._files[time].values()))
+        digits = re.search(r"_(\d+)\.\w+$", name)
+        if not digits:
+            raise RunError(f"'{name}' (fields.pvd) has no number in its name.")
+        return int(digits.group(1))
+
     def frame(self, number):
-        """Frame @p number, from 1."""
-        if not 1 <= number <= len(self.times):
-            raise RunError(f"There is no step {number}: '{self.directory}' has fields of "
-                           f"{len(self.times)} steps.")
-        time = self.times[number - 1]
+        """All fields of step @p number, as in the names of the files."""
+        if number not in self.step_numbers:
+            there = ", ".join(str(n) for n in self.step_numbers)
+            raise RunError(f"'{self.directory}' has no fields of step {number}, but of "
+                           f"{there}.")
+        time = self.times[self.step_numbers.index(number)]
         return Frame(number, time, self._files[time])
 
     def numbers(self, which):
-        """Frame numbers for --step first, last, peak, all or a number."""
-        n = len(self.times)
-        if n == 0:
+        """Step numbers for --step first, last, peak, all or a number."""
+        steps = self.step_numbers
+        if not steps:
             raise RunError(f"'{self.directory}' has no fields yet (fields.pvd).")
-        named = {"first": [1], "last": [n], "all": list(range(1, n + 1))}
+        named = {"first": steps[:1], "last": steps[-1:], "all": steps}
         if which in named:
             return named[which]
         if which == "peak":
             if not self.history or "axial_stress_Pa" not in self.history:
                 raise RunError("--step peak needs history.csv with axial_stress_Pa.")
-            top = self.history["shortening"][np.argmax(abs(self.history["axial_stress_Pa"]))]
-            return [1 + int(np.argmin(abs(np.array(self.times) - top)))]
+            top = self.history["shortening"][np.argmax(self.history["axial_stress_Pa"])]
+            return [steps[int(np.argmin(abs(np.array(self.times) - top)))]]
         if not which.isdigit():
             raise RunError(f"--step {which}: give first, last, peak, all or a number.")
         return [int(which)]

@@ -211,7 +211,8 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
   {
     const continuum::Vector &real =
         scene.bridging ? scene.bridging->mesh_mass() : scene.solid->lumped_mass();
-    scene.mesh->scale_density(real, foundation_rows, scene.dt0);
+    // The mesh is made as slow as the grains are, no slower.
+    scene.mesh->scale_density(real, foundation_rows, scaled && scene.grains ? step : 0.);
     double largest = 0.;
     const continuum::Vector sums = scene.solid->absolute_row_sums();
     for (std::size_t i = 0; i < scene.mesh->mass.locally_owned_size(); ++i)

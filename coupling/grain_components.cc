@@ -190,6 +190,12 @@ void GrainContacts::visit_state(StateArchive &archive)
 {
   std::vector<std::int64_t> pairs;
   std::vector<double> values;
+  if (archive.is_loading())
+  {
+    contacts_.contacts.clear();
+    contacts_.search_x.clear();
+    contacts_.search_y.clear();
+  }
   for (const Contact &c : contacts_.contacts)
   {
     pairs.push_back(c.first);

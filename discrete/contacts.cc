@@ -142,6 +142,12 @@ void add_contact_forces(Grains &grains, Contacts &contacts, const double dt)
     if (squared >= reach * reach)
     {
       contact.gap = std::sqrt(squared) - reach;
+      if (contact.shear_force != 0.) // slides out under a vanishing limit
+      {
+        const LinearContact &law = contacts.law(grains, contact);
+        contact.slip_energy += 0.5 * contact.shear_force * contact.shear_force *
+                               law.stiffness_ratio / normal_stiffness(law, r1, r2);
+      }
       contact.shear_force = contact.normal_force = 0.;
       continue;
     }
@@ -167,8 +173,7 @@ void add_contact_forces(Grains &grains, Contacts &contacts, const double dt)
       const double limit = law.friction * normal;
       shear = std::abs(trial) > limit ? std::copysign(limit, trial) : trial;
       if (shear != trial)
-        contact.slip_energy += 0.5 *
-                               (std::min(std::abs(contact.shear_force), limit) + limit) *
+        contact.slip_energy += 0.5 * (std::abs(contact.shear_force) + limit) *
                                (std::abs(trial) - limit) / k_s;
     }
     contact.gap = gap;

@@ -44,7 +44,7 @@ GrainVelocities velocities(const Grains &grains);
 double kinetic_energy(const Grains &grains, const GrainVelocities &before);
 
 /// Inertial masses for quasi-static work: m* = w max(m, k dt0^2) with the unweighted
-/// stiffness sums k, likewise inertia. @p weight: mass weights mu (empty: 1).
+/// stiffness sums k, and J* = w max(J, 3/2 k_rot dt0^2). @p weight: mass weights mu (empty: 1).
 void scale_density(Grains &grains,
                    const std::vector<double> &translation_stiffness,
                    const std::vector<double> &rotation_stiffness,

@@ -85,6 +85,47 @@ TrialStress bonded_stress(const Joints &joints,
   return {k * (d.gap - d.rotation * centre), k / law.stiffness_ratio * (d.shear - slip)};
 }
 
+/// Shear of a broken element that is closed over @p active of its length now and was over
+/// @p old_active at the last step, its normal force being @p normal_force now. The force
+/// is k_s times closed length times elastic slip. What closes further carries nothing at
+/// first; what opens gives up its share, as sliding under a vanishing limit.
+struct Rub
+{
+  double force = 0.;      ///< [N]
+  double dissipated = 0.; ///< [J]
+};
+Rub rub(const double k_s,
+        const double limit,
+        const double active,
+        const double old_active,
+        const double shear,
+        const double old_shear,
+        double &slip)
+{
+  Rub result;
+  double stretch = old_shear - slip;
+  const double stored = 0.5 * k_s * old_active * stretch * stretch;
+  if (active > old_active)
+    stretch *= old_active / active;
+  const double old_force = std::abs(k_s * active * stretch);
+  result.dissipated = stored - 0.5 * k_s * active * stretch * stretch;
+  slip = old_shear - stretch;
+  if (active == 0.)
+  {
+    slip = shear; // open: carries nothing, remembers where it stands
+    return result;
+  }
+  result.force = k_s * active * (shear - slip);
+  if (std::abs(result.force) > limit)
+  {
+    const double increment = (std::abs(result.force) - limit) / (k_s * active);
+    slip += std::copysign(increment, result.force);
+    result.force = std::copysign(limit, result.force);
+    result.dissipated += 0.5 * (old_force + limit) * increment;
+  }
+  return result;
+}
+
 /// Which strength a bonded element passes in this step, and passes first.
 Bond break_mode(const FlatJoint &law, const TrialStress &old, const TrialStress &now)
 {
@@ -135,7 +176,10 @@ void evaluate_damaged(const Grains &grains,
   {
     const ElementPlace place = element_place(joints, j, n, e);
     const double full = place.b - place.a;
-    double energy_lost = 0.;
+    const ElementResultant old_normal =
+        element_resultant(k_n, before.gap, before.rotation, place.a, place.b, false);
+    ElementResultant lost; // of an element that breaks now: what it would carry
+    double lost_shear = 0.;
     bool just_broken = false;
     if (damaged.bond[e] == Bond::bonded && cracks != nullptr && law.breakable)
     {
@@ -145,10 +189,10 @@ void evaluate_damaged(const Grains &grains,
           law, bonded_stress(joints, law, j, place, damaged.slip[e], before), stress);
       if (mode != Bond::bonded)
       {
-        energy_lost = element_resultant(k_n, now.gap, now.rotation, place.a, place.b,
-                                        true, law.element_moment)
-                          .strain_energy +
-                      0.5 * stress.shear * stress.shear * full / k_s;
+        lost = element_resultant(k_n, now.gap, now.rotation, place.a, place.b, true,
+                                 law.element_moment);
+        lost_shear = stress.shear * full;
+        lost.strain_energy += 0.5 * lost_shear * lost_shear / (k_s * full);
         damaged.bond[e] = mode;
         just_broken = true;
         cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
@@ -159,48 +203,52 @@ void evaluate_damaged(const Grains &grains,
     const ElementResultant normal = element_resultant(
         k_n, now.gap, now.rotation, place.a, place.b, bonded, law.element_moment);
     const double active = normal.active_length;
-    double tau = 0.; // force over the full element area
+    double shear_force = 0.;
     if (bonded)
-      tau = k_s * (now.shear - damaged.slip[e]);
-    else if (active == 0.)
-      damaged.slip[e] = now.shear; // open: carries nothing, remembers where it stands
+      shear_force = k_s * full * (now.shear - damaged.slip[e]);
     else
     {
-      const double old_gap = std::min(before.gap - before.rotation * place.a,
-                                      before.gap - before.rotation * place.b);
-      const double new_gap =
-          std::min(now.gap - now.rotation * place.a, now.gap - now.rotation * place.b);
-      if (old_gap >= 0. && !just_broken) // closes within the step: sticks from there on
-        damaged.slip[e] =
-            now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
-      const double k = k_s * active / full;
-      tau = k * (now.shear - damaged.slip[e]);
-      const double limit = law.residual_friction * std::abs(normal.normal_force) / full;
-      if (std::abs(tau) > limit)
+      const double limit = law.residual_friction * std::abs(normal.normal_force);
+      double old_shear = before.shear, old_active = old_normal.active_length;
+      if (just_broken)
+        old_active = active; // it stuck to its whole length so far
+      else if (old_active == 0. && active > 0.)
       {
-        const double slip_increment = (std::abs(tau) - limit) / k;
-        const double sliding = std::copysign(limit, tau);
-        if (!just_broken)
-          damaged.slip_energy +=
-              weight * 0.5 *
-              (std::min(std::abs(damaged.shear_stress[e]), limit) + limit) * full *
-              slip_increment;
-        damaged.slip[e] += std::copysign(slip_increment, tau);
-        tau = sliding;
+        // Closes within the step: sticks from there on.
+        const double old_gap = std::min(before.gap - before.rotation * place.a,
+                                        before.gap - before.rotation * place.b);
+        const double new_gap = std::min(now.gap - now.rotation * place.a,
+                                        now.gap - now.rotation * place.b);
+        old_shear =
+            now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
+        damaged.slip[e] = old_shear;
       }
+      const Rub friction =
+          rub(k_s, limit, active, old_active, now.shear, old_shear, damaged.slip[e]);
+      shear_force = friction.force;
+      if (!just_broken)
+        damaged.slip_energy += weight * friction.dissipated;
     }
     if (just_broken)
     {
+      // The drop of energy, less the work that the lost force did not do in the second
+      // half of this step (the trapezoidal rule of the stepping loop).
       const double kept =
           normal.strain_energy +
-          (active > 0. ? 0.5 * tau * tau * full * full / (k_s * active) : 0.);
-      damaged.fracture_energy += weight * (energy_lost - kept);
+          (active > 0. ? 0.5 * shear_force * shear_force / (k_s * active) : 0.);
+      damaged.fracture_energy +=
+          weight *
+          (lost.strain_energy - kept -
+           0.5 * ((lost.normal_force - normal.normal_force) * (now.gap - before.gap) +
+                  (lost_shear - shear_force) * (now.shear - before.shear) -
+                  (lost.moment - normal.moment) * (now.rotation - before.rotation)));
     }
+    const double tau = shear_force / full;
     damaged.shear_stress[e] = tau;
     damaged.normal_stress[e] = normal.normal_force / full;
     F += normal.normal_force;
     M += normal.moment;
-    S += tau * full;
+    S += shear_force;
     any_bonded = any_bonded || bonded;
     smallest_gap = std::min({smallest_gap, now.gap - now.rotation * place.a,
                              now.gap - now.rotation * place.b});
@@ -208,13 +256,13 @@ void evaluate_damaged(const Grains &grains,
 
   // Parted for good: the faces are a face length apart, or have slid off one another.
   const double R = joints.half_length[j];
-  if (!any_bonded && (smallest_gap > R || std::abs(now.shear) > 2. * R))
-    damaged.removed = true;
   damaged.gap = now.gap;
   damaged.shear = now.shear;
   damaged.rotation = now.rotation;
-  if (damaged.removed)
+  if (!any_bonded && (smallest_gap > R || std::abs(now.shear) > 2. * R))
   {
+    damaged.fracture_energy += strain_energy(joints, damaged);
+    damaged.removed = true;
     damaged.force = {0., 0., 0., 0.};
     return;
   }

@@ -27,8 +27,10 @@ constexpr double wall_void = 0.08;
 constexpr double first_compression = 0.02;
 constexpr double coarse_tolerance = 1e-2; // unbalanced ratio of the compressed cloud
 constexpr double search_tolerance = 1e-3; // while radii are sought
-constexpr double final_tolerance = 1e-7;
-constexpr double overlap_tolerance = 0.03;  // of the target overlap
+constexpr double final_tolerance = 1e-6;
+constexpr double overlap_tolerance = 0.03; // of the target overlap
+// Gaps may change by this between the search and the final state.
+constexpr double gap_margin = 4e-3;
 constexpr double diameter_tolerance = 0.01; // of the mean diameter
 constexpr double largest_radius = 1.;       // no radius ratio and growth gives more
 
@@ -93,30 +95,43 @@ std::vector<Disk> cloud(const Vessel &vessel,
     disks.push_back({vessel.holds(jittered) ? jittered : even,
                      smallest * (1. + (ratio - 1.) * size.uniform())});
   }
+  // Neighbours in space are neighbours in memory, here and in all that uses the grains:
+  // strips of two diameters across the longer side, swept along the shorter.
+  const bool along_x = extent.x >= extent.y;
+  const auto place_in_order = [&](const Disk &d)
+  {
+    const Vec2 c = along_x ? d.centre : Vec2{d.centre.y, d.centre.x};
+    return std::make_pair(std::floor(0.5 * c.x), c.y);
+  };
+  std::sort(disks.begin(), disks.end(),
+            [&](const Disk &a, const Disk &b)
+            { return place_in_order(a) < place_in_order(b); });
   return disks;
 }
 
-/// Scale all radii until the mean overlap is the target, and bring the disks to rest.
+double overlap_ratio(const Relaxation &relaxation, const ContactState &state)
+{
+  return state.mean_overlap / mean_diameter(relaxation.disks());
+}
+
+/// Scale all radii until the mean overlap is the target, with the disks nearly at rest.
 void install_overlap(Relaxation &relaxation, const double target)
 {
   double slope = 0.5; // of mean overlap over relative change of the radii
-  double previous = 0., change = 0.;
+  double previous = 0., change = 0., aim = target;
   for (int trial = 0; trial < 100; ++trial)
   {
-    double overlap = relaxation.relax(search_tolerance).mean_overlap /
-                     mean_diameter(relaxation.disks());
+    const double overlap = overlap_ratio(
+        relaxation,
+        relaxation.relax(aim > 1.5 * target ? coarse_tolerance : search_tolerance));
     if (std::abs(overlap / target - 1.) < overlap_tolerance)
-    {
-      overlap = relaxation.relax(final_tolerance).mean_overlap /
-                mean_diameter(relaxation.disks());
-      if (std::abs(overlap / target - 1.) < 2. * overlap_tolerance)
-        return;
-    }
+      return;
     // A secant whose slope is trusted within limits: contacts open and close on the way.
     if (change != 0. && (overlap - previous) / change > 0.2)
       slope = std::min((overlap - previous) / change, 1.5);
     // Let out by steps of two thirds, not at once: the last contacts must not be lost.
-    change = (std::max(target, overlap / 3.) - overlap) / slope;
+    aim = std::max(target, overlap / 3.);
+    change = (aim - overlap) / slope;
     previous = overlap;
     relaxation.scale(1. + change);
   }
@@ -162,16 +177,25 @@ jammed(const Vessel &vessel, const std::size_t n, const PackingParameters &p)
   relaxation.scale(1. + first_compression);
   relaxation.relax(coarse_tolerance);
   // While the packing is compressed, contacts are many: a swelling or lost grain disturbs
-  // its neighbours only. Gaps will open by about the compression.
+  // its neighbours only. Gaps will open by about twice the compression.
   std::vector<double> growth(n, 1.);
   const double gap = 0.5 * p.installation_gap_ratio;
-  remove_floaters(relaxation, growth, gap - std::min(0.5 * gap, first_compression),
+  remove_floaters(relaxation, growth, gap - std::min(0.5 * gap, 2. * first_compression),
                   [&] { relaxation.relax(coarse_tolerance); });
 
-  install_overlap(relaxation, p.target_overlap);
-  remove_floaters(relaxation, growth, gap,
-                  [&] { install_overlap(relaxation, p.target_overlap); });
-  return relaxation.disks();
+  const auto install = [&] { install_overlap(relaxation, p.target_overlap); };
+  for (int pass = 0; pass < 20; ++pass)
+  {
+    install();
+    remove_floaters(relaxation, growth, gap - gap_margin, install);
+    const double overlap = overlap_ratio(relaxation, relaxation.relax(final_tolerance));
+    if (std::abs(overlap / p.target_overlap - 1.) < 2. * overlap_tolerance &&
+        floaters(relaxation.disks(), vessel.confinement.period, gap).empty())
+      return relaxation.disks();
+  }
+  throw NumericalError("Packing",
+                       "no state of rest without floaters is found; give another seed",
+                       relaxation.state().unbalanced_ratio, final_tolerance);
 }
 
 /// Pack with the number of disks that gives the mean diameter asked for.

@@ -10,7 +10,9 @@ namespace antiform::discrete
 namespace
 {
 // Lengths in mean diameters; unit stiffness and mass.
-constexpr double skin = 0.2;         // of the neighbour lists
+// Reach of the neighbour lists beyond contact: while disks run, and when they creep.
+constexpr double wide_skin = 0.2, narrow_skin = 0.06;
+constexpr std::size_t creep = 200;   // steps that a list has served when disks creep
 constexpr double largest_move = 0.1; // of a disk in a step
 constexpr double largest_step = 0.4; // the fastest mode of six contacts allows 0.58
 constexpr double first_step = 0.1;
@@ -42,8 +44,10 @@ void Relaxation::scale(const double factor)
 
 void Relaxation::find_neighbours()
 {
+  skin_ = steps_ - last_search_ > creep ? narrow_skin : wide_skin;
+  last_search_ = steps_;
   travelled_ = 0.;
-  pairs_ = disk_pairs(disks_, confinement_.period, skin);
+  pairs_ = disk_pairs(disks_, confinement_.period, skin_);
   if (confinement_.edges == nullptr)
     return;
   edge_disk_.clear();
@@ -51,7 +55,7 @@ void Relaxation::find_neighbours()
   near_edges_.clear();
   for (std::size_t i = 0; i < disks_.size(); ++i)
   {
-    confinement_.edges->append_near(disks_[i].centre, disks_[i].radius + 0.5 * skin,
+    confinement_.edges->append_near(disks_[i].centre, disks_[i].radius + 0.5 * skin_,
                                     near_edges_);
     if (static_cast<std::int32_t>(near_edges_.size()) == edge_begin_.back())
       continue;
@@ -132,7 +136,7 @@ void Relaxation::drift(const double dt)
   for (std::size_t i = 0; i < disks_.size(); ++i)
     disks_[i].centre += dt * velocity_[i];
   travelled_ += std::min(move, largest_move);
-  if (travelled_ > 0.5 * skin)
+  if (travelled_ > 0.5 * skin_)
     find_neighbours();
 }
 

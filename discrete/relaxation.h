@@ -60,7 +60,9 @@ private:
   std::vector<std::int32_t> edge_begin_; ///< into near_edges_, per entry of edge_disk_
   std::vector<std::int32_t> near_edges_;
   std::vector<EdgeContact> contacts_;
-  double travelled_ = 0.; ///< bound on the way of any disk since the last search
+  double skin_ = 0.;            ///< reach of the lists beyond contact
+  std::size_t last_search_ = 0; ///< step of the last search
+  double travelled_ = 0.;       ///< bound on the way of any disk since the last search
   double sum_contact_force_ = 0.;
   std::size_t n_contacts_ = 0;
   std::size_t steps_ = 0;
