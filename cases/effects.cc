@@ -64,6 +64,18 @@ std::vector<Effect> list_effects(const Parameters &p)
   for (const std::string name : {"gravity", "surface pressure", "walls", "damping"})
     list.push_back(
         choose(name, p.has(name), "listed in Components", "not listed in Components"));
+  list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
+                        "gravity or surface pressure: the section was laid down under it",
+                        "neither gravity nor surface pressure"));
+  const bool steps = p.run.driver != "static";
+  const std::string no_steps = "the static driver takes no steps in time";
+  list.push_back(choose("motion of the grains", grains && steps,
+                        "the grains step in time",
+                        grains ? no_steps : "nothing is grains"));
+  list.push_back(choose("unbalanced force", steps,
+                        "damping and the record of equilibrium need it", no_steps));
+  list.push_back(
+      choose("record", steps, "history, cracks and fields", "written after each solve"));
   list.push_back(choose("density scaling", p.run.driver == "quasi-static",
                         "quasi-static driver: inertia is free to choose",
                         "only the quasi-static driver may scale densities"));

@@ -41,6 +41,7 @@ struct Placed
 {
   Disk disk;
   int region;
+  int tile_grain; ///< -1: not a copy
 };
 
 /// Copies of the tile in the matrix. A copy whose centre lies in the layer, or that would
@@ -80,8 +81,9 @@ std::vector<Placed> place_matrix(const MatrixRock &rock,
   const auto last_y = static_cast<int>(std::floor(geometry.surface() / period.y));
   for (int ix = first_x; ix <= last_x; ++ix)
     for (int iy = first_y; iy <= last_y; ++iy)
-      for (const Disk &disk : rock.tile.disks)
+      for (std::size_t k = 0; k < rock.tile.disks.size(); ++k)
       {
+        const Disk &disk = rock.tile.disks[k];
         const Vec2 c = disk.centre + Vec2{ix * period.x, iy * period.y};
         if (c.x < geometry.x_min() || c.x > geometry.x_max() || c.y < geometry.base() ||
             c.y > geometry.surface())
@@ -90,7 +92,7 @@ std::vector<Placed> place_matrix(const MatrixRock &rock,
           continue;
         const Disk copy{c, disk.radius};
         if (holds(c) && !covers_layer(copy))
-          placed.push_back({copy, matrix_region});
+          placed.push_back({copy, matrix_region, static_cast<int>(k)});
       }
   return placed;
 }
@@ -137,19 +139,22 @@ AllPairs find_pairs(const Grains &grains, const double layer_gap, const double m
           pairs_within(grains, matrix_gap, matrix_region, matrix_region)};
 }
 
-Grains number_grains(std::vector<Placed> placed, const Parameters &p)
+/// Number the grains by x, so that neighbours in space are neighbours in memory.
+void number_grains(std::vector<Placed> placed, const Parameters &p, GrainSection &section)
 {
-  // By x: neighbours in space are neighbours in memory.
   std::stable_sort(placed.begin(), placed.end(),
                    [](const Placed &a, const Placed &b)
                    { return a.disk.centre.x < b.disk.centre.x; });
-  Grains grains;
+  section.state.grains = {};
+  section.tile_grain.clear();
   for (const Placed &one : placed)
-    grains.add(one.disk.centre, one.disk.radius,
-               one.region == layer_region ? p.layer.grain_density
-                                          : p.matrix.grain_density,
-               one.region);
-  return grains;
+  {
+    section.state.grains.add(one.disk.centre, one.disk.radius,
+                             one.region == layer_region ? p.layer.grain_density
+                                                        : p.matrix.grain_density,
+                             one.region);
+    section.tile_grain.push_back(one.tile_grain);
+  }
 }
 
 void bond(GrainSection &section, const Parameters &p, const AllPairs &pairs)
@@ -213,7 +218,7 @@ GrainSection make_grains(const Parameters &p,
       pack_polygon(geometry.layer_outline(), packing_parameters(p, p.layer.seed));
   section.layer_quality = layer.quality;
   for (const Disk &disk : layer.disks)
-    placed.push_back({disk, layer_region});
+    placed.push_back({disk, layer_region, -1});
   const double layer_gap = p.layer.installation_gap * 0.5 * p.grain_diameter();
   section.installation_gap = layer_gap;
   double matrix_gap = 0.;
@@ -227,7 +232,8 @@ GrainSection make_grains(const Parameters &p,
       placed.push_back(one);
   }
 
-  Grains all = number_grains(placed, p);
+  number_grains(placed, p, section);
+  const Grains &all = section.state.grains;
   AllPairs pairs = find_pairs(all, layer_gap, matrix_gap);
   Pairs any = pairs.layer;
   any.insert(any.end(), pairs.interface.begin(), pairs.interface.end());
@@ -240,11 +246,11 @@ GrainSection make_grains(const Parameters &p,
     std::vector<Placed> kept;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (keep[i] != 0)
-        kept.push_back({{all.reference(i), all.radius[i]}, all.region[i]});
-    all = number_grains(kept, p);
+        kept.push_back(
+            {{all.reference(i), all.radius[i]}, all.region[i], section.tile_grain[i]});
+    number_grains(kept, p, section);
     pairs = find_pairs(all, layer_gap, matrix_gap);
   }
-  section.state.grains = std::move(all);
   progress("bonding");
   bond(section, p, pairs);
   return section;

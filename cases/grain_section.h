@@ -39,6 +39,7 @@ struct GrainSection
   coupling::GrainState state;
   discrete::PackingQuality layer_quality;
   std::optional<MatrixRock> matrix;
+  std::vector<int> tile_grain;    ///< grain of the tile that a matrix grain copies; -1
   std::vector<double> modulus;    ///< E* by region [Pa]
   double installation_gap = 0.;   ///< [m]
   std::size_t removed_grains = 0; ///< matrix grains without a path to the rest

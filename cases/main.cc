@@ -5,6 +5,9 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <unistd.h>
+
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -16,7 +19,7 @@ namespace ranks = dealii::Utilities::MPI;
 
 /// Do @p work on every rank, or fail with an InputError on every rank: a deck that one
 /// machine cannot read must not leave the other ranks waiting.
-void together(const MPI_Comm communicator, const std::function<void()> &work)
+void together(MPI_Comm communicator, const std::function<void()> &work)
 {
   std::vector<std::string> problems;
   try
@@ -35,7 +38,7 @@ void together(const MPI_Comm communicator, const std::function<void()> &work)
     throw InputError(ranks::broadcast(communicator, problems, first_failed));
 }
 
-int run_deck(RunOptions options, const MPI_Comm communicator)
+int run_deck(RunOptions options, MPI_Comm communicator)
 {
   const bool is_first = ranks::this_mpi_process(communicator) == 0;
   Parameters parameters;
@@ -56,7 +59,7 @@ int run_deck(RunOptions options, const MPI_Comm communicator)
   return run(parameters, options, communicator);
 }
 
-int execute(const CommandLine &line, const MPI_Comm communicator)
+int execute(const CommandLine &line, MPI_Comm communicator)
 {
   if (line.command == CommandLine::Command::run)
     return run_deck(line.run, communicator);
@@ -86,10 +89,23 @@ void print(const InputError &error)
   for (const std::string &problem : error.problems())
     std::cerr << "  " << problem << '\n';
 }
+
+/// Threads wait for each other at every step, many times. By default they spin for a
+/// tenth of a second, which is ten times slower as soon as another program wants a core;
+/// asleep at once they lose little on free cores. libgomp reads this when a program is
+/// loaded, so the program starts itself anew, unless the user has chosen.
+void wait_politely(char **argv)
+{
+  if (getenv("OMP_WAIT_POLICY") != nullptr || getenv("GOMP_SPINCOUNT") != nullptr)
+    return;
+  setenv("GOMP_SPINCOUNT", "1000", 0);
+  execv("/proc/self/exe", argv); // comes back only when it fails: then as it was
+}
 } // namespace
 
 int main(int argc, char **argv)
 {
+  wait_politely(argv);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const unsigned int rank = ranks::this_mpi_process(MPI_COMM_WORLD);
   try

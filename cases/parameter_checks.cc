@@ -40,15 +40,19 @@ void check_components(const Parameters &p, Findings &findings)
          "it carries the matrix' base. Add matrix or remove foundation.");
   for (const std::string load : {"gravity", "surface pressure"})
     if (p.has(load) && !p.has("matrix"))
-      find(load +
-           " without matrix: nothing would carry the layer, and it would fall. Add "
-           "matrix or remove " +
-           load + ".");
-  if (p.run.driver == "quasi-static" && !p.has("walls"))
+    {
+      std::string text = load;
+      text += " without matrix: nothing would carry the layer, and it would fall. Add "
+              "matrix or remove ";
+      text += load;
+      find(text + ".");
+    }
+  if (p.run.driver != "static" && !p.has("walls"))
     findings.push_back({{"Run/Driver", "Components"},
-                        "without walls nothing shortens the scene, and the quasi-static "
-                        "driver would never end. Add walls to 'Components', or use the "
-                        "static driver."});
+                        "without walls nothing shortens the scene, and the " +
+                            p.run.driver +
+                            " driver would never end. Add walls to 'Components', or use "
+                            "the static driver."});
   else if (!p.has("walls") && !p.has("gravity") && !p.has("surface pressure"))
     find("nothing loads the scene. Add walls, gravity or surface pressure.");
 }
@@ -186,6 +190,12 @@ void check_run(const Parameters &p, Findings &findings)
         {{"Run/End shortening", "Run/Longest shortening"},
          "beyond 'Run/Longest shortening' = " + short_text(p.run.longest_shortening) +
              ", where the run would be given up. Raise that, or end sooner."});
+  if (p.run.driver == "static" && p.has("layer") && p.layer.representation == "grains")
+    findings.push_back(
+        {{"Run/Driver", "Layer/Representation"},
+         "the static driver solves the elastic continuum, and the layer is "
+         "grains. Give quasi-static, or 'Layer/Representation' = "
+         "'continuum'."});
   if (p.run.driver == "static" && p.has("walls") && p.run.end_shortening == 0.)
     findings.push_back(
         {{"Run/End shortening", "Run/Driver"},

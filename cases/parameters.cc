@@ -22,6 +22,7 @@ const std::map<std::string, std::vector<std::string>> planned = {
 std::vector<std::string> names_of(const std::vector<Section> &sections)
 {
   std::vector<std::string> names;
+  names.reserve(sections.size());
   for (const Section &section : sections)
     names.push_back(section.name);
   return names;
@@ -98,7 +99,7 @@ private:
           (line == last_.end() ? file_ : line->second.place) + ": 'Components' is " +
           (line == last_.end() ? "missing" : "empty") +
           ". List what the scene has, of: " + join(all_components()) + ".");
-      refused_.push_back("Components");
+      refused_.emplace_back("Components");
     }
     else
     {
@@ -126,7 +127,7 @@ private:
       problems_.push_back(begin + ", which does not exist. " +
                           (near.empty() ? "" : "Did you mean '" + near + "'? ") +
                           "What exists: " + join(all) + ".");
-      refused_.push_back("Components");
+      refused_.emplace_back("Components");
     }
     else if (std::find(components.begin(), components.end(), name) != components.end())
       problems_.push_back(begin + " twice. Name it once.");

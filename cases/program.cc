@@ -76,13 +76,14 @@ public:
     auto recorder = std::make_unique<Recorder>(*scene_, options_.output, options_.resume);
     recorder_ = recorder.get();
     scene_->simulation->add(std::move(recorder), {coupling::Stage::sample}, 0, "record",
-                            "history, cracks and fields");
+                            reason_for(parameters_, "record"));
     scene_->simulation->set_sampler([this](const coupling::Clock &clock)
                                     { return recorder_->is_due(clock); });
     if (state != nullptr)
     {
       visit_state(*state);
       state->expect_all_read();
+      log_.line("resumed at step " + std::to_string(scene_->simulation->clock().step));
     }
     describe();
     const int status = step_to_end();
@@ -94,8 +95,7 @@ public:
   void fail(const std::string &reason)
   {
     failure_ = reason;
-    if (scene_)
-      finish("failed");
+    finish("failed");
   }
 
 private:
@@ -146,6 +146,11 @@ private:
 
   int step_to_end()
   {
+    if (recorder_->finished())
+    {
+      log_.line("the run had ended already, at " + recorder_->why_finished());
+      return 0;
+    }
     if (!options_.resume)
       checkpoint();
     coupling::Simulation &simulation = *scene_->simulation;
@@ -191,19 +196,11 @@ private:
     return 0;
   }
 
-  void finish(const std::string &status)
+  /// Sizes, and the calls that the loop has counted. Without a scene (its making failed)
+  /// there are none.
+  void describe_scene(Summary &summary) const
   {
     const Scene &s = *scene_;
-    Summary summary;
-    summary.title = parameters_.title;
-    summary.version = ANTIFORM_VERSION;
-    summary.status = status;
-    summary.wall_seconds = past_.wall_seconds + seconds_since(begin_);
-    summary.cpu_seconds = past_.cpu_seconds + cpu_seconds();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    summary.peak_memory = usage.ru_maxrss * 1024;
-    summary.threads = omp_get_max_threads();
     if (s.mesh)
       summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(
           s.solid->dof_handler().get_communicator()));
@@ -218,18 +215,34 @@ private:
         s.mesh ? static_cast<std::int64_t>(s.solid->dof_handler().n_dofs()) : 0;
     sizes["multipliers"] =
         s.bridging ? static_cast<std::int64_t>(s.bridging->n_multipliers()) : 0;
-    summary.steps = s.simulation ? s.simulation->clock().step : 0;
+    summary.steps = s.simulation->clock().step;
+    for (const coupling::EffectCount &count : s.simulation->effects())
+    {
+      EffectSummary &entry = summary.effects[count.name];
+      entry.active = true;
+      entry.reason = count.reason;
+      entry.calls = std::max(entry.calls, count.calls); // grains and mesh: one effect
+      entry.seconds += count.seconds;
+    }
+  }
+
+  void finish(const std::string &status)
+  {
+    Summary summary;
+    summary.title = parameters_.title;
+    summary.version = ANTIFORM_VERSION;
+    summary.status = status;
+    summary.wall_seconds = past_.wall_seconds + seconds_since(begin_);
+    summary.cpu_seconds = past_.cpu_seconds + cpu_seconds();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    summary.peak_memory = usage.ru_maxrss * 1024;
+    summary.threads = omp_get_max_threads();
     for (const Effect &effect : list_effects(parameters_))
-      summary.effects[effect.name] = {false, effect.reason, 0, 0.};
-    if (s.simulation)
-      for (const coupling::EffectCount &count : s.simulation->effects())
-      {
-        EffectSummary &entry = summary.effects[count.name];
-        entry.active = true;
-        entry.reason = count.reason;
-        entry.calls = std::max(entry.calls, count.calls); // grains and mesh: one effect
-        entry.seconds += count.seconds;
-      }
+      summary.effects[effect.name] = {effect.state == Effect::State::present,
+                                      effect.reason, 0, 0.};
+    if (scene_)
+      describe_scene(summary);
     if (recorder_ != nullptr)
       recorder_->fill(summary);
     if (!failure_.empty())
@@ -249,6 +262,8 @@ private:
     }
     for (const std::string &warning : summary.warnings)
       log_.line("warning: " + warning);
+    if (recorder_ == nullptr)
+      return; // stopped before the first step
     char text[160];
     std::snprintf(text, sizeof text,
                   "%s: %lld steps in %.1f s, energy ledger closed to %.2g",
@@ -302,13 +317,19 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
 
 void demand_one_rank(const Parameters &p, const MPI_Comm communicator)
 {
-  if (p.layer.representation == "grains" &&
-      dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+  if (n_ranks == 1)
+    return;
+  const std::string on_ranks = " on " + std::to_string(n_ranks) + " MPI ranks: ";
+  if (p.layer.representation == "grains")
     throw InputError(
-        {"'Layer / Representation' is grains on " +
-         std::to_string(dealii::Utilities::MPI::n_mpi_processes(communicator)) +
-         " MPI ranks: grains run on one rank. Start without mpirun and use "
-         "--threads, or set it to continuum, which runs on any number."});
+        {"'Layer/Representation' is grains" + on_ranks +
+         "grains run on one rank. Start without mpirun and use --threads, or set it to "
+         "continuum with the static driver, which runs on any number."});
+  if (p.run.driver != "static")
+    throw InputError({"'Run/Driver' is " + p.run.driver + on_ranks +
+                      "what steps in time runs on one rank. Start without mpirun and use "
+                      "--threads, or set it to static, which runs on any number."});
 }
 } // namespace
 

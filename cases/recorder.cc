@@ -402,6 +402,7 @@ void Recorder::visit_state(coupling::StateArchive &archive)
     throw std::runtime_error("the checkpoint is of another version of the program");
   for (std::size_t k = 0; k < members.size(); ++k)
     *members[k] = values[k];
+  look_for_end(last_); // a completed run has nothing left to do
   history_.emplace(
       coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[3]));
   if (scene_.grains)

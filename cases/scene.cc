@@ -1,5 +1,7 @@
 #include "cases/scene.h"
 
+#include "cases/prestress.h"
+
 #include "continuum/foundation.h"
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
@@ -266,15 +268,6 @@ void add_grain_components(Scene &scene)
     simulation.add(std::make_unique<GrainContacts>(state, scene.contacts),
                    {Stage::forces}, rank_contacts, "contacts", reason("contacts"));
   }
-  if (p.has("gravity"))
-  {
-    std::vector<double> weight;
-    if (scene.bridging)
-      for (std::size_t i = 0; i < state.grains.size(); ++i)
-        weight.push_back(scene.bridging->weight().grains(state.grains.reference(i)));
-    simulation.add(std::make_unique<GrainGravity>(state, p.gravity.acceleration, weight),
-                   {Stage::forces}, rank_loads, "gravity", reason("gravity"));
-  }
   if (p.has("matrix") && p.matrix.representation == "grains")
   {
     std::vector<GrainBase::Support> supports;
@@ -289,17 +282,69 @@ void add_grain_components(Scene &scene)
   }
 }
 
-void add_mesh_components(Scene &scene)
+/// Gravity and surface pressure, and the prestress under which they are in equilibrium.
+void add_loads(Scene &scene)
 {
   const Parameters &p = scene.parameters;
+  if (!p.has("gravity") && !p.has("surface pressure"))
+    return;
   Simulation &simulation = *scene.simulation;
-  if (p.has("gravity"))
+  const auto add = [&](auto component, const std::string &name)
   {
-    dealii::Tensor<1, 2> acceleration;
-    acceleration[1] = -p.gravity.acceleration;
-    simulation.add(std::make_unique<MeshLoads>(
-                       *scene.mesh, continuum::gravity(*scene.solid, acceleration)),
-                   {Stage::forces}, rank_loads, "gravity", reason_for(p, "gravity"));
+    simulation.add(std::move(component), {Stage::forces}, rank_loads, name,
+                   reason_for(p, name));
+  };
+  continuum::Vector all;
+  if (scene.mesh)
+  {
+    all = scene.solid->make_vector();
+    const auto add_to_mesh = [&](const continuum::Vector &load, const std::string &name)
+    {
+      all += load;
+      add(std::make_unique<MeshLoads>(*scene.mesh, load), name);
+    };
+    dealii::Tensor<1, 2> down;
+    down[1] = -p.gravity.acceleration;
+    if (p.has("gravity"))
+      add_to_mesh(continuum::gravity(*scene.solid, down), "gravity");
+    if (p.has("surface pressure"))
+      add_to_mesh(continuum::pressure(*scene.solid, {continuum::boundary::top},
+                                      p.surface_pressure.pressure),
+                  "surface pressure");
+  }
+  const InstalledPrestress installed = install_prestress(scene, all);
+  if (scene.mesh)
+  {
+    continuum::Vector force = installed.mesh_force;
+    if (p.has("foundation"))
+      force += continuum::pressure(*scene.solid, {continuum::boundary::bottom},
+                                   prestress_of(scene).pressure(scene.geometry.base()));
+    add(std::make_unique<MeshLoads>(*scene.mesh, force, true), "prestress");
+  }
+  if (!scene.grains)
+    return;
+  GrainState &state = scene.grains->state;
+  std::vector<double> weight;
+  if (scene.bridging)
+    for (std::size_t i = 0; i < state.grains.size(); ++i)
+      weight.push_back(scene.bridging->weight().grains(state.grains.reference(i)));
+  if (p.has("gravity"))
+    add(std::make_unique<GrainGravity>(state, p.gravity.acceleration, weight), "gravity");
+  if (p.has("surface pressure") && !scene.mesh)
+  {
+    std::vector<std::pair<std::int32_t, Vec2>> chain;
+    for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
+      chain.emplace_back(i, Vec2{0., -p.surface_pressure.pressure * width});
+    add(std::make_unique<GrainLoads>(state, chain), "surface pressure");
+  }
+  if (!installed.grain_base_force.empty())
+  {
+    std::vector<std::pair<std::int32_t, Vec2>> base;
+    for (std::size_t i = 0; i < installed.grain_base_force.size(); ++i)
+      if (installed.grain_base_force[i] != 0.)
+        base.emplace_back(static_cast<std::int32_t>(i),
+                          Vec2{0., installed.grain_base_force[i]});
+    add(std::make_unique<GrainLoads>(state, base), "prestress");
   }
 }
 
@@ -315,7 +360,7 @@ void add_common_components(Scene &scene)
   scene.constrained = &simulation.add(
       std::make_unique<ConstrainedForces>(grains, mesh, domain, !p.has("damping")),
       {Stage::damp}, rank_constrained, "unbalanced force",
-      "damping and the record of equilibrium need it");
+      reason_for(p, "unbalanced force"));
   const discrete::GrainDamping *grain_damping = nullptr;
   const std::vector<double> *mesh_damping = nullptr;
   if (p.has("damping"))
@@ -337,20 +382,20 @@ void add_common_components(Scene &scene)
     { return t >= ramp ? full : full * 0.5 * (1. - std::cos(M_PI * t / ramp)); };
     scene.wall_motion =
         &simulation.add(std::make_unique<Walls>(scene.walls, grains, mesh, domain, speed),
-                        {Stage::forces, Stage::react, Stage::drift},
-                        rank_walls, "walls", reason_for(p, "walls"));
+                        {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls",
+                        reason_for(p, "walls"));
   }
   if (grains != nullptr)
     simulation
         .add(std::make_unique<GrainMotion>(*grains), {Stage::kick, Stage::drift},
-             rank_motion, "motion of the grains", "explicit driver")
+             rank_motion, "motion of the grains", reason_for(p, "motion of the grains"))
         .damping = grain_damping;
   if (mesh != nullptr)
   {
     simulation
         .add(std::make_unique<MeshMotion>(*mesh, scene.walls),
-             {Stage::forces, Stage::kick, Stage::drift},
-             rank_mesh + (p.has("walls") ? 0 : 0), "mesh", reason_for(p, "mesh"))
+             {Stage::forces, Stage::kick, Stage::drift}, rank_mesh, "mesh",
+             reason_for(p, "mesh"))
         .damping = mesh_damping;
   }
   if (domain != nullptr)
@@ -461,13 +506,12 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
   const double dt = choose_step(*scene, foundation_rows);
   if (bridged)
     scene->bridging->factorise(scene->grains->state.grains, scene->mesh->inverse_mass);
-  if (bridged && !p.bridging.constraint)
-    scene->bridging.reset();
   scene->simulation = std::make_unique<Simulation>(dt);
   if (scene->grains)
     add_grain_components(*scene);
-  if (scene->mesh)
-    add_mesh_components(*scene);
+  add_loads(*scene);
+  if (bridged && !p.bridging.constraint)
+    scene->bridging.reset(); // weighted, but not joined: the negative control
   if (foundation)
     scene->simulation->add(std::move(foundation), {Stage::forces}, rank_loads,
                            "foundation", reason_for(p, "foundation"));

@@ -51,12 +51,6 @@ int run_static(const Parameters &p,
                RunLog &log,
                const MPI_Comm communicator)
 {
-  if (p.layer.representation == "grains")
-    throw InputError(
-        {"'Run / Driver' is static with 'Layer / Representation' grains: the static "
-         "driver "
-         "solves the elastic continuum. Use the driver quasi-static, or set the "
-         "representation to continuum."});
   const auto begin = std::chrono::steady_clock::now();
   const std::unique_ptr<Scene> scene =
       build(p, communicator, [&](const std::string &what) { log.line("  " + what); });

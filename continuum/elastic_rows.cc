@@ -76,7 +76,8 @@ void ElasticSolid::add_internal_force(const Vector &displacement, Vector &force)
     for (std::size_t k = rows_.start[node]; k < rows_.start[node + 1]; ++k)
     {
       const auto &block = rows_.block[k];
-      const double ux = u[2 * rows_.column[k]], uy = u[2 * rows_.column[k] + 1];
+      const double *at_node = u + std::size_t{2} * rows_.column[k];
+      const double ux = at_node[0], uy = at_node[1];
       x += block[0] * ux + block[1] * uy;
       y += block[2] * ux + block[3] * uy;
     }

@@ -217,8 +217,8 @@ std::optional<CriticalState> SupportedLayer::critical() const
       low = a;
   }
   const double k = std::exp(log_k(0.5 * (low + high)));
-  const double N = buckling_force(k);
-  return CriticalState{N, N / layer.thickness, k, 2. * pi / k};
+  const double least = buckling_force(k);
+  return CriticalState{least, least / layer.thickness, k, 2. * pi / k};
 }
 
 Mode SupportedLayer::critical_mode(const double length) const
@@ -231,8 +231,8 @@ Mode SupportedLayer::critical_mode(const double length) const
     const double k = m * pi / length;
     if (bending_force(k) > best.force)
       break;
-    if (const double N = buckling_force(k); N < best.force)
-      best = {m, N};
+    if (const double force = buckling_force(k); force < best.force)
+      best = {m, force};
   }
   return best;
 }
@@ -248,10 +248,11 @@ SupportedLayer::stress_ratio_at_buckling(const double compressive_strength) cons
 CriticalState
 deep_limit(const Layer &layer, const double matrix_plane_modulus, const bool both_sides)
 {
-  const double n_sides = both_sides ? 2. : 1., D = layer.bending_stiffness();
-  const double k = std::cbrt(n_sides * matrix_plane_modulus / (4. * D));
-  const double N = 3. * D * k * k;
-  return {N, N / layer.thickness, k, 2. * pi / k};
+  const double n_sides = both_sides ? 2. : 1.;
+  const double bending = layer.bending_stiffness();
+  const double k = std::cbrt(n_sides * matrix_plane_modulus / (4. * bending));
+  const double force = 3. * bending * k * k;
+  return {force, force / layer.thickness, k, 2. * pi / k};
 }
 
 double cover_variable(const double cover_ratio,

@@ -81,9 +81,12 @@ Vector prestress(const ElasticSolid &solid, const StressField &initial_stress)
       solid,
       [&](const auto &, const Point<2> &place)
       {
-        return [&fe, S = initial_stress(place)](
-                   const FEValues<2> &values, const unsigned int i, const unsigned int q)
-        { return -(S * values.shape_grad(i, q))[fe.system_to_component_index(i).first]; };
+        return [&fe, stress = initial_stress(place)](const FEValues<2> &values,
+                                                     const unsigned int i,
+                                                     const unsigned int q) {
+          return -(stress *
+                   values.shape_grad(i, q))[fe.system_to_component_index(i).first];
+        };
       });
 }
 

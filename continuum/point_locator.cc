@@ -74,7 +74,8 @@ PointLocator::PointLocator(const dealii::Triangulation<2> &triangulation)
                 std::max(1, static_cast<int>(height / size))};
   bucket_size_ = {width / n_buckets_[0], height / n_buckets_[1]};
 
-  std::vector<std::vector<std::size_t>> lists(n_buckets_[0] * n_buckets_[1]);
+  std::vector<std::vector<std::size_t>> lists(static_cast<std::size_t>(n_buckets_[0]) *
+                                              n_buckets_[1]);
   for (std::size_t i = 0; i < cells_.size(); ++i)
   {
     Point<2> low = corners_[i][0], high = corners_[i][0];

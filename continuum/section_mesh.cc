@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -159,21 +161,28 @@ private:
     for (unsigned int c = 0; c <= n_columns_; ++c)
     {
       const double lower = strip.lower(x(c)), upper = strip.upper(x(c));
-      const std::string where = " at x = " + std::to_string(x(c)) + " m";
-      require(upper > lower, name + " has height " + std::to_string(upper - lower) +
-                                 " m" + where +
-                                 "; its upper face must lie above its lower one.");
+      if (!(upper > lower))
+        refuse(name, "its height, which must be above 0, is", upper - lower, c);
       if (vertices_.empty())
         continue;
-      const double below = vertices_[vertices_.size() - n_columns_ - 1 + c][1];
+      const double gap = lower - vertices_[vertices_.size() - n_columns_ - 1 + c][1];
       const double tolerance = 1e-9 * (upper - lower);
-      require(lower >= below - tolerance, name + " reaches " +
-                                              std::to_string(below - lower) +
-                                              " m into the strip below it" + where + ".");
-      require(!strip.joined_to_previous || lower <= below + tolerance,
-              name + " is joined to the strip below but lies " +
-                  std::to_string(lower - below) + " m above it" + where + ".");
+      if (!(gap >= -tolerance))
+        refuse(name, "it reaches into the strip below; their distance is", gap, c);
+      if (strip.joined_to_previous && !(gap <= tolerance))
+        refuse(name, "it is joined to the strip below, but their distance is", gap, c);
     }
+  }
+
+  [[noreturn]] void refuse(const std::string &name,
+                           const char *problem,
+                           const double metres,
+                           const unsigned int column) const
+  {
+    std::ostringstream text;
+    text << "section mesh: " << name << " at x = " << x(column) << " m: " << problem
+         << ' ' << metres << " m.";
+    throw std::invalid_argument(text.str());
   }
 
   void add_row_of_cells(const unsigned int start, const unsigned int material)

@@ -65,7 +65,11 @@ std::vector<std::vector<int>> connected_parts(const Eigen::SparseMatrix<double> 
 void demand_regular(const Eigen::SparseMatrix<double> &matrix,
                     const std::function<std::string(Eigen::Index)> &name_of_row)
 {
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  // The shift, far below the limit, keeps a pivot from being exactly 0, which would end
+  // the factorisation before the other pivots are known.
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+  factor.setShift(1e-13 * matrix.diagonal().mean());
+  factor.compute(matrix);
   const Eigen::VectorXd pivots = factor.vectorD();
   Eigen::Index smallest = 0;
   const double least = pivots.minCoeff(&smallest), mean = pivots.mean();

@@ -141,8 +141,11 @@ std::vector<double> MeshFoundation::absolute_row_sums() const
   return sums;
 }
 
-MeshLoads::MeshLoads(MeshState &state, const continuum::Vector &load)
+MeshLoads::MeshLoads(MeshState &state,
+                     const continuum::Vector &load,
+                     const bool is_prestress)
     : state_(state)
+    , is_prestress_(is_prestress)
 {
   for (std::uint32_t i = 0; i < load.locally_owned_size(); ++i)
     if (load.begin()[i] != 0.)
@@ -157,7 +160,12 @@ void MeshLoads::run(const Stage, const Clock &)
 
 void MeshLoads::add_energies(Energies &energies) const
 {
+  double work = 0.;
   for (const auto &[dof, force] : load_)
-    energies.boundary_work += force * state_.displacement.begin()[dof];
+    work += force * state_.displacement.begin()[dof];
+  if (is_prestress_)
+    energies.strain_continuum -= work;
+  else
+    energies.boundary_work += work;
 }
 } // namespace antiform::coupling

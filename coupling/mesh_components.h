@@ -81,16 +81,18 @@ private:
   std::vector<Entry> entries_;
 };
 
-/// Nodal forces that do not change: weight of the mesh, surface pressure.
+/// Nodal forces that do not change: weight of the mesh, surface pressure; or those of an
+/// installed prestress, whose work is strain energy, not work of the boundary.
 class MeshLoads : public Component
 {
 public:
-  MeshLoads(MeshState &state, const continuum::Vector &load);
+  MeshLoads(MeshState &state, const continuum::Vector &load, bool is_prestress = false);
   void run(Stage stage, const Clock &clock) override;
   void add_energies(Energies &energies) const override;
 
 private:
   MeshState &state_;
   std::vector<std::pair<std::uint32_t, double>> load_;
+  bool is_prestress_;
 };
 } // namespace antiform::coupling

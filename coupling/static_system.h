@@ -35,6 +35,10 @@ public:
   void fix_mesh(std::size_t dof, double value);
   /// Spring to the ground on a grain [N/m].
   void add_grain_spring(std::size_t grain, unsigned int component, double stiffness);
+  /// Spring along @p normal between the centres of two grains (a frictionless contact)
+  /// [N/m].
+  void
+  add_pair_spring(std::size_t one, std::size_t two, const Vec2 &normal, double stiffness);
   /// External force on a grain [N] (component 2: torque [N m]) or on a mesh dof [N].
   void add_grain_force(std::size_t grain, unsigned int component, double force);
   void add_mesh_force(std::size_t dof, double force);
@@ -55,6 +59,13 @@ private:
   const BridgingDomain *bridging_;
   std::map<std::size_t, double> fixed_;
   std::vector<double> spring_, force_;
+  struct PairSpring
+  {
+    std::size_t one, two;
+    Vec2 normal;
+    double stiffness;
+  };
+  std::vector<PairSpring> pair_springs_;
 };
 
 /// The linearised kinematics of joint @p j at rest: rows gap, shear, rotation over the

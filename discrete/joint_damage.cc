@@ -141,6 +141,113 @@ Bond break_mode(const FlatJoint &law, const TrialStress &old, const TrialStress 
     return Bond::bonded;
   return tension <= shear ? Bond::broken_in_tension : Bond::broken_in_shear;
 }
+/// What an element gives to its joint.
+struct ElementForce
+{
+  double normal = 0., shear = 0., moment = 0.;
+};
+
+/// An element's two evaluations: what it carries, and what it would have carried
+/// unbroken.
+struct Evaluation
+{
+  ElementForce force;
+  double energy = 0.;
+};
+Evaluation bonded_element(const double k_n,
+                          const double k_s,
+                          const ElementPlace &place,
+                          const double slip,
+                          const JointDeformation &d,
+                          const bool element_moment)
+{
+  const ElementResultant normal =
+      element_resultant(k_n, d.gap, d.rotation, place.a, place.b, true, element_moment);
+  const double full = place.b - place.a, shear = k_s * full * (d.shear - slip);
+  return {{normal.normal_force, shear, normal.moment},
+          normal.strain_energy + 0.5 * shear * shear / (k_s * full)};
+}
+
+/// \param[in,out] slip of the element
+/// \param[out] dissipated by sliding in this step
+Evaluation broken_element(const double k_n,
+                          const double k_s,
+                          const FlatJoint &law,
+                          const ElementPlace &place,
+                          const JointDeformation &now,
+                          const JointDeformation &before,
+                          const bool just_broken,
+                          double &slip,
+                          double &dissipated)
+{
+  const auto resultant = [&](const JointDeformation &d)
+  {
+    return element_resultant(k_n, d.gap, d.rotation, place.a, place.b, false,
+                             law.element_moment);
+  };
+  const ElementResultant normal = resultant(now);
+  const double active = normal.active_length;
+  const double old_active = just_broken ? active : resultant(before).active_length;
+  double old_shear = before.shear;
+  if (old_active == 0. && active > 0.)
+  {
+    // Closes within the step: sticks from there on.
+    const double old_gap = std::min(before.gap - before.rotation * place.a,
+                                    before.gap - before.rotation * place.b);
+    const double new_gap =
+        std::min(now.gap - now.rotation * place.a, now.gap - now.rotation * place.b);
+    old_shear = now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
+    slip = old_shear;
+  }
+  const double limit = law.residual_friction * std::abs(normal.normal_force);
+  const Rub friction = rub(k_s, limit, active, old_active, now.shear, old_shear, slip);
+  dissipated = friction.dissipated;
+  const double energy =
+      normal.strain_energy +
+      (active > 0. ? 0.5 * friction.force * friction.force / (k_s * active) : 0.);
+  return {{normal.normal_force, friction.force, normal.moment}, energy};
+}
+
+/// Energy that a break in this step takes: the drop, less the work that the lost force
+/// did not do in the second half of the step (the trapezoidal rule of the stepping loop).
+double fracture_energy(const Evaluation &unbroken,
+                       const Evaluation &broken,
+                       const JointDeformation &now,
+                       const JointDeformation &before)
+{
+  const ElementForce &u = unbroken.force, &b = broken.force;
+  return unbroken.energy - broken.energy -
+         0.5 * ((u.normal - b.normal) * (now.gap - before.gap) +
+                (u.shear - b.shear) * (now.shear - before.shear) -
+                (u.moment - b.moment) * (now.rotation - before.rotation));
+}
+
+/// Force on the second grain, -F n - S t, and torques: it acts at the middle of the
+/// faces.
+JointForce on_grains(const Grains &grains,
+                     const Joints &joints,
+                     const std::size_t j,
+                     const ElementForce &sum,
+                     const JointDeformation &now)
+{
+  const std::size_t one = joints.first[j], two = joints.second[j];
+  const double turn = 0.5 * (grains.rotation[one] + grains.rotation[two]);
+  const Vec2 n = rotated({joints.normal_x[j], joints.normal_y[j]}, turn);
+  const double half = 0.5 * (grains.rotation[two] - grains.rotation[one]);
+  const double face_cos = std::cos(half), face_sin = std::sin(half);
+  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
+  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
+  double gap = now.gap, shear = now.shear; // levers are geometric: without prestress
+  if (!joints.initial_gap.empty())
+  {
+    gap -= joints.initial_gap[j];
+    shear -= joints.initial_shear[j];
+  }
+  const double F = sum.normal, S = sum.shear, M = sum.moment;
+  return {S * n.y - F * n.x, -F * n.y - S * n.x,
+          (r1 * face_cos + 0.5 * gap) * S - (0.5 * shear - r1 * face_sin) * F - M,
+          (r2 * face_cos + 0.5 * gap) * S - (0.5 * shear + r2 * face_sin) * F + M};
+}
 } // namespace
 
 DamagedJoint make_damaged(const Joints &joints, const std::size_t joint)
@@ -165,100 +272,58 @@ void evaluate_damaged(const Grains &grains,
 {
   const std::size_t j = damaged.joint;
   const FlatJoint &law = joints.group_of(j).law;
-  const int n = law.n_elements;
   const double weight = joints.weight.empty() ? 1. : joints.weight[j];
   const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
-  double F = 0., S = 0., M = 0.;
+  ElementForce sum;
   bool any_bonded = false;
   double smallest_gap = std::numeric_limits<double>::infinity();
 
-  for (int e = 0; e < n; ++e)
+  for (int e = 0; e < law.n_elements; ++e)
   {
-    const ElementPlace place = element_place(joints, j, n, e);
-    const double full = place.b - place.a;
-    const ElementResultant old_normal =
-        element_resultant(k_n, before.gap, before.rotation, place.a, place.b, false);
-    ElementResultant lost; // of an element that breaks now: what it would carry
-    double lost_shear = 0.;
-    bool just_broken = false;
-    if (damaged.bond[e] == Bond::bonded && cracks != nullptr && law.breakable)
+    const ElementPlace place = element_place(joints, j, law.n_elements, e);
+    double &slip = damaged.slip[e];
+    Evaluation element;
+    Bond mode = damaged.bond[e];
+    if (mode == Bond::bonded)
     {
-      const TrialStress stress =
-          bonded_stress(joints, law, j, place, damaged.slip[e], now);
-      const Bond mode = break_mode(
-          law, bonded_stress(joints, law, j, place, damaged.slip[e], before), stress);
-      if (mode != Bond::bonded)
+      element = bonded_element(k_n, k_s, place, slip, now, law.element_moment);
+      if (cracks != nullptr && law.breakable)
+        mode = break_mode(law, bonded_stress(joints, law, j, place, slip, before),
+                          bonded_stress(joints, law, j, place, slip, now));
+    }
+    if (mode != Bond::bonded)
+    {
+      const bool just_broken = damaged.bond[e] == Bond::bonded;
+      double dissipated = 0.;
+      const Evaluation broken = broken_element(k_n, k_s, law, place, now, before,
+                                               just_broken, slip, dissipated);
+      if (just_broken)
       {
-        lost = element_resultant(k_n, now.gap, now.rotation, place.a, place.b, true,
-                                 law.element_moment);
-        lost_shear = stress.shear * full;
-        lost.strain_energy += 0.5 * lost_shear * lost_shear / (k_s * full);
+        damaged.fracture_energy += weight * fracture_energy(element, broken, now, before);
         damaged.bond[e] = mode;
-        just_broken = true;
         cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
       }
+      else
+        damaged.slip_energy += weight * dissipated;
+      element = broken;
     }
 
-    const bool bonded = damaged.bond[e] == Bond::bonded;
-    const ElementResultant normal = element_resultant(
-        k_n, now.gap, now.rotation, place.a, place.b, bonded, law.element_moment);
-    const double active = normal.active_length;
-    double shear_force = 0.;
-    if (bonded)
-      shear_force = k_s * full * (now.shear - damaged.slip[e]);
-    else
-    {
-      const double limit = law.residual_friction * std::abs(normal.normal_force);
-      double old_shear = before.shear, old_active = old_normal.active_length;
-      if (just_broken)
-        old_active = active; // it stuck to its whole length so far
-      else if (old_active == 0. && active > 0.)
-      {
-        // Closes within the step: sticks from there on.
-        const double old_gap = std::min(before.gap - before.rotation * place.a,
-                                        before.gap - before.rotation * place.b);
-        const double new_gap = std::min(now.gap - now.rotation * place.a,
-                                        now.gap - now.rotation * place.b);
-        old_shear =
-            now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
-        damaged.slip[e] = old_shear;
-      }
-      const Rub friction =
-          rub(k_s, limit, active, old_active, now.shear, old_shear, damaged.slip[e]);
-      shear_force = friction.force;
-      if (!just_broken)
-        damaged.slip_energy += weight * friction.dissipated;
-    }
-    if (just_broken)
-    {
-      // The drop of energy, less the work that the lost force did not do in the second
-      // half of this step (the trapezoidal rule of the stepping loop).
-      const double kept =
-          normal.strain_energy +
-          (active > 0. ? 0.5 * shear_force * shear_force / (k_s * active) : 0.);
-      damaged.fracture_energy +=
-          weight *
-          (lost.strain_energy - kept -
-           0.5 * ((lost.normal_force - normal.normal_force) * (now.gap - before.gap) +
-                  (lost_shear - shear_force) * (now.shear - before.shear) -
-                  (lost.moment - normal.moment) * (now.rotation - before.rotation)));
-    }
-    const double tau = shear_force / full;
-    damaged.shear_stress[e] = tau;
-    damaged.normal_stress[e] = normal.normal_force / full;
-    F += normal.normal_force;
-    M += normal.moment;
-    S += shear_force;
-    any_bonded = any_bonded || bonded;
+    const double full = place.b - place.a;
+    damaged.shear_stress[e] = element.force.shear / full;
+    damaged.normal_stress[e] = element.force.normal / full;
+    sum.normal += weight * element.force.normal;
+    sum.shear += weight * element.force.shear;
+    sum.moment += weight * element.force.moment;
+    any_bonded = any_bonded || mode == Bond::bonded;
     smallest_gap = std::min({smallest_gap, now.gap - now.rotation * place.a,
                              now.gap - now.rotation * place.b});
   }
 
-  // Parted for good: the faces are a face length apart, or have slid off one another.
-  const double R = joints.half_length[j];
   damaged.gap = now.gap;
   damaged.shear = now.shear;
   damaged.rotation = now.rotation;
+  // Parted for good: the faces are a face length apart, or have slid off one another.
+  const double R = joints.half_length[j];
   if (!any_bonded && (smallest_gap > R || std::abs(now.shear) > 2. * R))
   {
     damaged.fracture_energy += strain_energy(joints, damaged);
@@ -266,27 +331,7 @@ void evaluate_damaged(const Grains &grains,
     damaged.force = {0., 0., 0., 0.};
     return;
   }
-
-  F *= weight;
-  S *= weight;
-  M *= weight;
-  const std::size_t one = joints.first[j], two = joints.second[j];
-  const double turn = 0.5 * (grains.rotation[one] + grains.rotation[two]);
-  const Vec2 n_now = rotated({joints.normal_x[j], joints.normal_y[j]}, turn);
-  const double half = 0.5 * (grains.rotation[two] - grains.rotation[one]);
-  const double face_cos = std::cos(half), face_sin = std::sin(half);
-  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
-  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
-  double gap = now.gap, shear = now.shear; // levers are geometric: without prestress
-  if (!joints.initial_gap.empty())
-  {
-    gap -= joints.initial_gap[j];
-    shear -= joints.initial_shear[j];
-  }
-  damaged.force = {
-      S * n_now.y - F * n_now.x, -F * n_now.y - S * n_now.x,
-      (r1 * face_cos + 0.5 * gap) * S - (0.5 * shear - r1 * face_sin) * F - M,
-      (r2 * face_cos + 0.5 * gap) * S - (0.5 * shear + r2 * face_sin) * F + M};
+  damaged.force = on_grains(grains, joints, j, sum, now);
 }
 
 double strain_energy(const Joints &joints, const DamagedJoint &damaged)

@@ -25,9 +25,11 @@ constexpr double wall_void = 0.08;
 // The cloud is compressed by this before it is let out to the target overlap: a packing
 // that is approached from above is jammed all the way.
 constexpr double first_compression = 0.02;
-constexpr double coarse_tolerance = 1e-2; // unbalanced ratio of the compressed cloud
-constexpr double search_tolerance = 1e-3; // while radii are sought
+constexpr double coarse_tolerance = 1e-2;   // unbalanced ratio of the compressed cloud
+constexpr double approach_tolerance = 2e-3; // on the way to the target overlap
+constexpr double search_tolerance = 1e-3;   // while radii are sought
 constexpr double final_tolerance = 1e-6;
+constexpr double parted = 0.05;            // mean overlap over target: not jammed
 constexpr double overlap_tolerance = 0.03; // of the target overlap
 // Gaps may change by this between the search and the final state.
 constexpr double gap_margin = 4e-3;
@@ -121,9 +123,9 @@ void install_overlap(Relaxation &relaxation, const double target)
   double previous = 0., change = 0., aim = target;
   for (int trial = 0; trial < 100; ++trial)
   {
-    const double overlap = overlap_ratio(
-        relaxation,
-        relaxation.relax(aim > 1.5 * target ? coarse_tolerance : search_tolerance));
+    const double tolerance = aim > 1.5 * target ? approach_tolerance : search_tolerance;
+    const double overlap =
+        overlap_ratio(relaxation, relaxation.relax(tolerance, parted * target));
     if (std::abs(overlap / target - 1.) < overlap_tolerance)
       return;
     // A secant whose slope is trusted within limits: contacts open and close on the way.
@@ -175,20 +177,21 @@ jammed(const Vessel &vessel, const std::size_t n, const PackingParameters &p)
 {
   Relaxation relaxation(cloud(vessel, n, p.radius_ratio, p.seed), vessel.confinement);
   relaxation.scale(1. + first_compression);
-  relaxation.relax(coarse_tolerance);
+  relaxation.relax(coarse_tolerance, parted * p.target_overlap);
   // While the packing is compressed, contacts are many: a swelling or lost grain disturbs
   // its neighbours only. Gaps will open by about twice the compression.
   std::vector<double> growth(n, 1.);
   const double gap = 0.5 * p.installation_gap_ratio;
   remove_floaters(relaxation, growth, gap - std::min(0.5 * gap, 2. * first_compression),
-                  [&] { relaxation.relax(coarse_tolerance); });
+                  [&] { relaxation.relax(coarse_tolerance, parted * p.target_overlap); });
 
   const auto install = [&] { install_overlap(relaxation, p.target_overlap); };
   for (int pass = 0; pass < 20; ++pass)
   {
     install();
     remove_floaters(relaxation, growth, gap - gap_margin, install);
-    const double overlap = overlap_ratio(relaxation, relaxation.relax(final_tolerance));
+    const double overlap = overlap_ratio(
+        relaxation, relaxation.relax(final_tolerance, parted * p.target_overlap));
     if (std::abs(overlap / p.target_overlap - 1.) < 2. * overlap_tolerance &&
         floaters(relaxation.disks(), vessel.confinement.period, gap).empty())
       return relaxation.disks();

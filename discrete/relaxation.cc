@@ -16,7 +16,6 @@ constexpr std::size_t creep = 200;   // steps that a list has served when disks 
 constexpr double largest_move = 0.1; // of a disk in a step
 constexpr double largest_step = 0.4; // the fastest mode of six contacts allows 0.58
 constexpr double first_step = 0.1;
-constexpr double no_overlap = 1e-9; // mean overlap at which the disks have parted
 constexpr std::size_t check_interval = 20;
 constexpr std::size_t most_steps = 2000000;
 } // namespace
@@ -69,21 +68,31 @@ ContactState Relaxation::add_forces()
   std::fill(force_.begin(), force_.end(), Vec2{});
   ContactState state;
   double sum = 0., largest = 0.;
-  for (const DiskPair &p : pairs_)
+  for (std::size_t k = 0; k < pairs_.size();)
   {
-    const Vec2 d = branch(disks_, p);
-    const double reach = disks_[p.first].radius + disks_[p.second].radius;
-    const double square = dot(d, d);
-    if (square >= reach * reach || square == 0.)
-      continue;
-    const double distance = std::sqrt(square);
-    const double overlap = reach - distance;
-    const Vec2 push = (overlap / distance) * d;
-    force_[p.first] += -push;
-    force_[p.second] += push;
-    sum += overlap;
-    largest = std::max(largest, overlap);
-    ++state.touching;
+    // The pairs of one first disk follow each other: its sum stays in registers.
+    const std::int32_t i = pairs_[k].first;
+    const Disk disk = disks_[i];
+    Vec2 total = force_[i];
+    for (; k < pairs_.size() && pairs_[k].first == i; ++k)
+    {
+      const DiskPair &p = pairs_[k];
+      const Disk &other = disks_[p.second];
+      const Vec2 d = other.centre + p.shift - disk.centre;
+      const double reach = disk.radius + other.radius;
+      const double square = dot(d, d);
+      if (!(square < reach * reach && square > 0.))
+        continue;
+      const double distance = std::sqrt(square);
+      const double overlap = reach - distance;
+      const Vec2 push = (overlap / distance) * d;
+      total += -push;
+      force_[p.second] += push;
+      sum += overlap;
+      largest = std::max(largest, overlap);
+      ++state.touching;
+    }
+    force_[i] = total;
   }
   sum_contact_force_ = sum;
   n_contacts_ = state.touching;
@@ -140,7 +149,7 @@ void Relaxation::drift(const double dt)
     find_neighbours();
 }
 
-ContactState Relaxation::relax(const double tolerance)
+ContactState Relaxation::relax(const double tolerance, const double parted)
 {
   double dt = first_step, mixing = 0.1;
   int downhill = 0;
@@ -151,7 +160,7 @@ ContactState Relaxation::relax(const double tolerance)
     if (step % check_interval == 0)
     {
       state.unbalanced_ratio = unbalanced_ratio();
-      if (state.unbalanced_ratio <= tolerance || state.mean_overlap < no_overlap)
+      if (state.unbalanced_ratio <= tolerance || state.mean_overlap < parted)
         return state;
     }
     double power = 0., forces = 0., speeds = 0.;

@@ -37,9 +37,10 @@ public:
   void replace(std::vector<Disk> disks);
   /// Multiply all radii by @p factor.
   void scale(double factor);
-  /// Move the disks until the unbalanced ratio is at most @p tolerance or all pairs part.
-  /// Throws NumericalError when that does not come about.
-  ContactState relax(double tolerance);
+  /// Move the disks until the unbalanced ratio is at most @p tolerance, or the mean
+  /// overlap falls below @p parted: disks that are not jammed lose their contacts, and
+  /// ever slower. Throws NumericalError when neither comes about.
+  ContactState relax(double tolerance, double parted);
   /// Contacts of the disks as they are.
   ContactState state();
   std::size_t steps() const { return steps_; } ///< taken so far

@@ -11,6 +11,8 @@
 
 #include <deal.II/distributed/tria.h>
 
+#include <omp.h>
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -148,7 +150,8 @@ struct Bridged
   std::unique_ptr<BridgingDomain> domain;
   std::vector<discrete::Wall> walls;
 
-  Bridged() = default;
+  /// One thread: these models are too small to share out.
+  Bridged() { omp_set_num_threads(1); }
   Bridged(const Bridged &) = delete;
 
   /// Bond the grains, weigh both sides and join them; triangulation and weight are there.

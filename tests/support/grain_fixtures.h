@@ -6,6 +6,8 @@
 #include "discrete/joints.h"
 #include "discrete/walls.h"
 
+#include <omp.h>
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -28,6 +30,24 @@ public:
 
 private:
   std::mt19937_64 engine_;
+};
+
+/// Number of threads for the time of a scope. Small samples run on one: more would only
+/// wait for one another.
+class Threads
+{
+public:
+  explicit Threads(const int n)
+      : before_(omp_get_max_threads())
+  {
+    omp_set_num_threads(n);
+  }
+  ~Threads() { omp_set_num_threads(before_); }
+  Threads(const Threads &) = delete;
+  Threads &operator=(const Threads &) = delete;
+
+private:
+  int before_;
 };
 
 /// Grains and joints of a test, in units of its own (modulus 1e3, density 1, diameter 1

@@ -1,0 +1,91 @@
+// The same deck gives the same bits: again, from its deck.prm, on another number of
+// threads; on another number of ranks the same force to round-off.
+#include "support/tiny_run.h"
+
+using namespace antiform::test;
+
+TEST(Repeatability, ThreadsDoNotChangeABit)
+{
+  const TemporaryFolder folder;
+  for (const int n_threads : {1, 2})
+  {
+    const Outcome outcome =
+        run_tiny(folder.path(std::to_string(n_threads)), "", n_threads);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(summary_of(folder.path(std::to_string(n_threads))).at("threads"),
+              n_threads);
+  }
+  ASSERT_GT(CsvTable(folder.path("1/cracks.csv")).size(), 20u);
+  expect_same_run(folder.path("1"), folder.path("2"));
+}
+
+TEST(Repeatability, DeckPrmRepeatsTheRun)
+{
+  const TemporaryFolder folder;
+  const Outcome first = run_tiny(folder.path("first"), set({"Layer/Seed=3"}));
+  ASSERT_EQ(first.status, 0) << first.output;
+  const Outcome again =
+      run_program("run " + folder.path("first/deck.prm") + " -o " + folder.path("again"));
+  ASSERT_EQ(again.status, 0) << again.output;
+  expect_same_run(folder.path("first"), folder.path("again"));
+}
+
+namespace
+{
+/// Wall force and strain energy of a bent, buried layer of continuum on @p n_ranks.
+CsvTable static_history(const std::string &directory, const int n_ranks)
+{
+  const Outcome outcome = run_program(
+      "run " + tiny_deck() + " -o " + directory +
+          set({"Layer/Representation=continuum", "Layer/Shape=cosine",
+               "Components=layer, matrix, foundation, walls", "Run/Driver=static",
+               "Run/End shortening=1e-3", "Run/Load steps=2"}),
+      n_ranks);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(summary_of(directory).at("ranks"), n_ranks);
+  return CsvTable(directory + "/history.csv");
+}
+} // namespace
+
+TEST(Repeatability, RanksAgreeOnTheForceOfAContinuum)
+{
+  const TemporaryFolder folder;
+  const CsvTable one = static_history(folder.path("one"), 1),
+                 two = static_history(folder.path("two"), 2);
+  // The solver's tolerance is 1e-10 of the load; on other ranks it stops elsewhere in it.
+  for (const char *name : {"wall_force_N", "strain_continuum_J"})
+  {
+    const std::vector<double> a = one.column(name), b = two.column(name);
+    ASSERT_EQ(a.size(), 2u);
+    ASSERT_EQ(b.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k)
+    {
+      EXPECT_GT(a[k], 0.);
+      EXPECT_NEAR(b[k] / a[k], 1., 1e-8) << name;
+    }
+  }
+  // Work of the walls, force times way over two, is the energy (Clapeyron).
+  const std::vector<double> force = one.column("wall_force_N"),
+                            energy = one.column("strain_continuum_J"),
+                            shortening = one.column("shortening");
+  const nlohmann::json check = nlohmann::json::parse(
+      run_program("check --json " + tiny_deck() + set({"Layer/Shape=cosine"})).output);
+  const double length = check.at("geometry").at("length_m");
+  EXPECT_NEAR(0.5 * force[1] * shortening[1] * length / energy[1], 1., 1e-6);
+}
+
+TEST(Repeatability, WhatRunsOnOneRankRefusesTwo)
+{
+  const TemporaryFolder folder;
+  for (const std::vector<std::string> &entries :
+       {std::vector<std::string>{},
+        {"Layer/Representation=continuum", "Run/Driver=dynamic"}})
+  {
+    const Outcome outcome =
+        run_program("run " + tiny_deck() + " -o " + folder.path("run") + set(entries), 2);
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_EQ(occurrences(outcome.output, "on 2 MPI ranks"), 1u) << outcome.output;
+    EXPECT_EQ(occurrences(outcome.output, "--threads"), 1u) << outcome.output;
+    EXPECT_TRUE(all_contents(folder.path("run")).empty());
+  }
+}

@@ -1,0 +1,110 @@
+#include "cases/command_line.h"
+
+#include "cases/interrupt.h"
+
+#include <gtest/gtest.h>
+
+using namespace antiform::cases;
+using Command = CommandLine::Command;
+
+namespace
+{
+std::string refusal_of(const std::vector<std::string> &arguments)
+{
+  try
+  {
+    parse_command_line(arguments);
+  }
+  catch (const InputError &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+} // namespace
+
+TEST(CommandLine, ReadsEveryOptionOfRun)
+{
+  const CommandLine line = parse_command_line(
+      {"run", "--set", "Layer/Seed=2", "deck.prm", "-o", "out", "--set", "Title=a b, c",
+       "--threads", "3", "--resume", "--time-limit", "1.5"});
+  EXPECT_EQ(line.command, Command::run);
+  EXPECT_EQ(line.run.deck, "deck.prm");
+  EXPECT_EQ(line.run.output, "out");
+  EXPECT_EQ(line.run.overrides,
+            (std::vector<std::string>{"Layer/Seed=2", "Title=a b, c"}));
+  EXPECT_EQ(line.run.threads, 3);
+  EXPECT_TRUE(line.run.resume);
+  EXPECT_EQ(line.run.time_limit, 1.5);
+}
+
+TEST(CommandLine, LeavesOutWhatIsNotGiven)
+{
+  const CommandLine line = parse_command_line({"run", "deck.prm"});
+  EXPECT_TRUE(line.run.output.empty());
+  EXPECT_TRUE(line.run.overrides.empty());
+  EXPECT_EQ(line.run.threads, 0);
+  EXPECT_FALSE(line.run.resume);
+  EXPECT_EQ(line.run.time_limit, 0.);
+}
+
+TEST(CommandLine, ReadsCheckAndParameters)
+{
+  const CommandLine check =
+      parse_command_line({"check", "d.prm", "--json", "--set", "a=b"});
+  EXPECT_EQ(check.command, Command::check);
+  EXPECT_TRUE(check.json);
+  EXPECT_EQ(check.run.overrides.size(), 1u);
+  const CommandLine parameters = parse_command_line({"parameters", "overlap"});
+  EXPECT_EQ(parameters.command, Command::parameters);
+  EXPECT_EQ(parameters.name, "overlap");
+  EXPECT_TRUE(parse_command_line({"parameters", "--markdown"}).markdown);
+}
+
+TEST(CommandLine, EveryCommandHasHelpWithAnExample)
+{
+  for (const std::string command : {"", "run", "check", "parameters"})
+  {
+    std::vector<std::string> arguments = {"--help"};
+    if (!command.empty())
+      arguments.insert(arguments.begin(), command);
+    const CommandLine line = parse_command_line(arguments);
+    EXPECT_EQ(line.command, Command::help);
+    EXPECT_NE(line.help_text.find("Example:\n  antiform"), std::string::npos) << command;
+  }
+}
+
+TEST(CommandLine, RefusesWhatItDoesNotKnow)
+{
+  EXPECT_NE(refusal_of({"run", "d.prm", "--fast"}).find("--fast"), std::string::npos);
+  EXPECT_NE(refusal_of({"run"}).find("DECK"), std::string::npos);
+  EXPECT_NE(refusal_of({"run", "d.prm", "--threads", "0"}).find("--threads"),
+            std::string::npos);
+  EXPECT_NE(refusal_of({"run", "d.prm", "--time-limit", "-1"}).find("--time-limit"),
+            std::string::npos);
+  EXPECT_NE(refusal_of({"run", "a.prm", "b.prm"}).find("b.prm"), std::string::npos);
+  EXPECT_NE(refusal_of({}), "");
+  EXPECT_NE(refusal_of({"fold"}), "");
+}
+
+TEST(CommandLine, NamesWhatExistsForCommandsThatDoNotYet)
+{
+  for (const std::string command : {"study", "compare", "calibrate", "theory", "report"})
+  {
+    const std::string text = refusal_of({command, "x", "--help"});
+    EXPECT_NE(text.find("antiform " + command), std::string::npos) << text;
+    EXPECT_NE(text.find("run, check, parameters"), std::string::npos) << text;
+  }
+}
+
+TEST(Interrupt, RemembersTheSignalAndGoesOn)
+{
+  catch_interrupts();
+  EXPECT_EQ(interrupt_signal(), 0);
+  raise(SIGTERM);
+  EXPECT_EQ(interrupt_signal(), SIGTERM);
+  raise(SIGINT);
+  EXPECT_EQ(interrupt_signal(), SIGINT);
+  signal(SIGINT, SIG_DFL);
+  signal(SIGTERM, SIG_DFL);
+}

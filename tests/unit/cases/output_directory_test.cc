@@ -1,0 +1,84 @@
+#include "cases/output_directory.h"
+
+#include "unit/cases/scratch.h"
+
+#include <gtest/gtest.h>
+
+using namespace antiform::cases;
+
+namespace
+{
+RunOptions options_for(const std::string &output, const bool resume = false)
+{
+  RunOptions options;
+  options.deck = "deck.prm";
+  options.output = output;
+  options.resume = resume;
+  return options;
+}
+
+std::string refusal_of(RunOptions options)
+{
+  try
+  {
+    prepare_output_directory(options);
+  }
+  catch (const InputError &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+} // namespace
+
+TEST(OutputDirectory, IsBesideTheDeckByDefault)
+{
+  const Scratch scratch;
+  RunOptions options;
+  options.deck = scratch.write("fold.prm", "");
+  prepare_output_directory(options);
+  EXPECT_EQ(options.output, scratch.path("fold-output"));
+  EXPECT_TRUE(std::filesystem::is_empty(options.output));
+}
+
+TEST(OutputDirectory, AcceptsAnEmptyOrForeignDirectoryAndRefusesAnotherRun)
+{
+  const Scratch scratch;
+  EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), "");
+  EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), ""); // empty, made just now
+  scratch.write("a/b/notes.txt", "mine");
+  EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), "");
+  for (const std::string file : {"summary.json", "state.h5", "deck.prm"})
+  {
+    scratch.write(file + ".d/" + file, "old");
+    const std::string text = refusal_of(options_for(scratch.path(file + ".d")));
+    EXPECT_NE(text.find("holds another run (" + file), std::string::npos) << text;
+    EXPECT_NE(text.find("--resume"), std::string::npos) << text;
+  }
+}
+
+TEST(OutputDirectory, ResumesWhereThereIsAStateAndElseSaysThatItStartsAfresh)
+{
+  const Scratch scratch;
+  scratch.write("with/state.h5", "state");
+  RunOptions with = options_for(scratch.path("with"), true);
+  EXPECT_EQ(prepare_output_directory(with), "");
+  EXPECT_TRUE(with.resume);
+
+  scratch.write("without/summary.json", "old");
+  RunOptions without = options_for(scratch.path("without"), true);
+  EXPECT_NE(prepare_output_directory(without).find("starts afresh"), std::string::npos);
+  EXPECT_FALSE(without.resume);
+}
+
+TEST(OutputDirectory, RefusesWhatCannotBeWrittenTo)
+{
+  const Scratch scratch;
+  const std::string file = scratch.write("file", "");
+  EXPECT_NE(refusal_of(options_for(file)).find("is a file"), std::string::npos);
+  EXPECT_NE(refusal_of(options_for(file + "/below")).find("cannot be created"),
+            std::string::npos);
+  // Not even root may create files in the process file system.
+  EXPECT_NE(refusal_of(options_for("/proc")).find("cannot be written to"),
+            std::string::npos);
+}

@@ -1,0 +1,168 @@
+// Buckling forces from static deflections under a sine load at forces below the critical
+// one (Southwell): W = q / (D k^4 + k_w - N k^2), so 1/W falls linearly and is 0 at N(k).
+#include "continuum/foundation.h"
+#include "continuum/layer_theory.h"
+#include "continuum/loads.h"
+#include "support/solid_fixtures.h"
+
+#include <gtest/gtest.h>
+
+using namespace antiform::continuum;
+using namespace antiform::testing;
+
+namespace
+{
+/// A strip of Q2 cells whose ends may turn and slide along x, on springs at its lower
+/// face.
+class PinnedStrip
+{
+public:
+  PinnedStrip(const theory::Layer &layer,
+              const double length,
+              const unsigned int n_columns,
+              const double foundation)
+      : layer_(layer)
+      , length_(length)
+      , triangulation_(MPI_COMM_WORLD)
+      , solid_(mesh(n_columns),
+               {ElasticMaterial::isotropic(layer.young_modulus, layer.poisson_ratio, 1.)},
+               2)
+  {
+    if (foundation > 0.)
+      solid_.add_to_stiffness(winkler_foundation(solid_, {boundary::bottom}, foundation));
+    dealii::SymmetricTensor<2, 2> unit;
+    unit[0][0] = -1. / layer.thickness; // one newton a metre of compression
+    geometric_.reinit(solid_.stiffness());
+    geometric_.add(1., solid_.geometric_stiffness(unit));
+
+    const auto zero = [](const Point<2> &) { return 0.; };
+    prescribe(solid_, boundary::left, 1, zero, values_);
+    prescribe(solid_, boundary::right, 1, zero, values_);
+    hold_node(solid_, Point<2>(0., 0.), 0, values_);
+  }
+
+  /// Amplitude of the axis under sin(m pi x / L) on the upper face and axial force N [m].
+  double deflection(const double N, const unsigned int m) const
+  {
+    const double k = m * M_PI / length_;
+    const auto load =
+        boundary_traction(solid_, {boundary::top},
+                          [&](const Point<2> &p, const auto &) {
+                            return dealii::Tensor<1, 2>({0., std::sin(k * p[0])});
+                          });
+    dealii::TrilinosWrappers::SparseMatrix matrix;
+    matrix.copy_from(solid_.stiffness());
+    matrix.add(N, geometric_);
+    const auto u = solve_direct(solid_, matrix, values_, load);
+    double amplitude = 0.;
+    for (const auto dof : solid_.locally_owned())
+    {
+      const auto p = solid_.support_point(dof);
+      if (solid_.component(dof) == 1 && std::abs(p[1]) < 1e-9 &&
+          std::abs(p[0] - 0.5 * length_ / m) < 1e-9)
+        amplitude = u(dof);
+    }
+    return dealii::Utilities::MPI::sum(amplitude, MPI_COMM_WORLD);
+  }
+
+  /// Where the line through 1/W at two forces meets 0 [N/m].
+  double buckling_force(const unsigned int m, const double N1, const double N2) const
+  {
+    const double y1 = 1. / deflection(N1, m), y2 = 1. / deflection(N2, m);
+    return N1 + y1 * (N2 - N1) / (y1 - y2);
+  }
+
+private:
+  const Triangulation &mesh(const unsigned int n_columns)
+  {
+    make_rectangle(triangulation_, length_, layer_.thickness, n_columns, 2);
+    return triangulation_;
+  }
+
+  theory::Layer layer_;
+  double length_;
+  Triangulation triangulation_;
+  ElasticSolid solid_;
+  dealii::TrilinosWrappers::SparseMatrix geometric_;
+  DirichletValues values_;
+};
+
+/// A layer with D = 1 N m.
+theory::Layer unit_layer(const double thickness)
+{
+  return {12. / (thickness * thickness * thickness), 0., thickness};
+}
+
+void expect_winkler_mode(const double length,
+                         const double foundation,
+                         const unsigned int mode,
+                         const double force)
+{
+  // Eighty cells a wave at least, and no flatter than 5 : 1: Q2 cells that are ten times
+  // longer than high are 1e-3 too stiff in bending. Crests are nodes for every mode
+  // tested.
+  const unsigned int n_columns = mode == 2 ? 96 : 240;
+  // Shear lowers D k^2 by 0.2 (k h)^2, the turning sections by (k h)^2 / 12 (nu = 0):
+  // together 3e-4 for this thickness and the fifth mode.
+  const double thickness = length / 500.;
+  const PinnedStrip strip(unit_layer(thickness), length, n_columns, foundation);
+  const double N = strip.buckling_force(mode, 0.3 * force, 0.6 * force);
+  EXPECT_NEAR(N, force, 1e-3 * force);
+  for (const unsigned int other : {mode - 1, mode + 1})
+    EXPECT_GT(strip.buckling_force(other, 0.3 * force, 0.6 * force), N);
+}
+} // namespace
+
+TEST(Buckling, PinnedColumnReachesEulersForce)
+{
+  const double length = 20.;
+  const theory::Layer layer{20e9, 0.25, 1.};
+  const PinnedStrip column(layer, length, 20, 0.);
+  const double k = M_PI / length;
+  const double euler = layer.bending_stiffness() * k * k;
+
+  const double N = column.buckling_force(1, 0.3 * euler, 0.6 * euler);
+  EXPECT_NEAR(N, euler, 0.01 * euler); // plane-strain D; shear takes 0.9 %
+  // With shear and the turning of sections: what is left is of order (k h)^4, 6e-4, and
+  // the discretisation.
+  EXPECT_NEAR(N, layer.thick_bending_force(k), 1e-3 * euler);
+
+  // 1/W is linear: a third force lies on the line. The deviation is from the turning of
+  // sections, (k h)^2 / 12 of that of the shear.
+  const double predicted = 1. / column.deflection(0., 1) * (1. - 0.8 * euler / N);
+  EXPECT_NEAR(1. / column.deflection(0.8 * euler, 1), predicted, 1e-4 * predicted);
+}
+
+TEST(Buckling, StripOnSpringsOfUnitLengthTakesTheSecondMode)
+{
+  expect_winkler_mode(1., 500., 2, 52.1436);
+}
+
+TEST(Buckling, StripOnStiffSpringsTakesTheFifthMode)
+{
+  expect_winkler_mode(1., 5e4, 5, 449.3825);
+}
+
+TEST(Buckling, LongStripOnSpringsTakesTheFifthMode)
+{
+  expect_winkler_mode(3., 1e3, 5, 63.8912);
+}
+
+TEST(Buckling, ClosedFormGivesTheModesOnSprings)
+{
+  // D (m pi / L)^2 + k_w (L / m pi)^2 worked out by hand. The third is tabulated
+  // elsewhere as 63.8919, which has lost a digit: 27.415568 + 36.475626.
+  struct Case
+  {
+    double length, foundation;
+    theory::Mode expected;
+  };
+  for (const Case &c : {Case{1., 500., {2, 52.143566}}, Case{1., 5e4, {5, 449.38248}},
+                        Case{3., 1e3, {5, 63.891194}}})
+  {
+    const auto mode = theory::winkler_critical_mode(1., c.foundation, c.length);
+    EXPECT_EQ(mode.half_waves, c.expected.half_waves);
+    EXPECT_NEAR(mode.force, c.expected.force,
+                1e-6 * c.expected.force); // of the digits given
+  }
+}
