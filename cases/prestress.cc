@@ -1,9 +1,6 @@
 #include "cases/prestress.h"
 
 #include "continuum/loads.h"
-#include "continuum/section_mesh.h"
-#include "coupling/static_system.h"
-#include "discrete/errors.h"
 
 #include <Eigen/Cholesky>
 
@@ -180,9 +177,8 @@ void press_walls(Scene &scene, const Prestress &prestress)
   }
 }
 
-/// Vertical external forces on the grains: gravity, surface pressure, base.
-std::vector<double>
-grain_loads(const Scene &scene, const Prestress &prestress, InstalledPrestress &installed)
+/// Vertical external forces on the grains: gravity, surface pressure [N].
+std::vector<double> external_forces(const Scene &scene)
 {
   const Parameters &p = scene.parameters;
   const Grains &grains = scene.grains->state.grains;
@@ -192,27 +188,16 @@ grain_loads(const Scene &scene, const Prestress &prestress, InstalledPrestress &
       force[i] -=
           grains.mass[i] * p.gravity.acceleration *
           (scene.bridging ? scene.bridging->weight().grains(grains.reference(i)) : 1.);
-  const bool all_grains = !scene.mesh;
-  if (all_grains && p.has("surface pressure"))
+  if (!scene.mesh && p.has("surface pressure"))
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
       force[i] -= p.surface_pressure.pressure * width;
-  if (all_grains && p.has("foundation"))
-  {
-    installed.grain_base_force.assign(grains.size(), 0.);
-    for (const auto &[i, width] : base_grains(*scene.grains, scene.geometry))
-      installed.grain_base_force[i] = prestress.pressure(scene.geometry.base()) * width;
-    for (std::size_t i = 0; i < grains.size(); ++i)
-      force[i] += installed.grain_base_force[i];
-  }
   return force;
 }
 
-/// One linear solve for the pseudo-displacement that balances the residual, added to the
-/// stress-free deformations. Returns the largest force left.
-void relax(Scene &scene,
-           const std::vector<double> &loads,
-           const continuum::Vector &mesh_loads,
-           InstalledPrestress &installed)
+/// What the forces of joints, walls, contacts and loads leave over on each grain,
+/// opposite.
+std::vector<coupling::GrainLoad> holding_forces(Scene &scene,
+                                                const std::vector<double> &loads)
 {
   Grains &grains = scene.grains->state.grains;
   Joints &joints = scene.grains->state.joints;
@@ -224,73 +209,39 @@ void relax(Scene &scene,
     search_contacts(grains, joints, scene.contacts);
     add_contact_forces(grains, scene.contacts, 0.);
   }
-  coupling::StaticSystem system(grains, joints, scene.solid.get(), scene.bridging.get());
+  std::vector<coupling::GrainLoad> held(grains.size());
   for (std::size_t i = 0; i < grains.size(); ++i)
-  {
-    system.add_grain_force(i, 0, grains.force_x[i]);
-    system.add_grain_force(i, 1, grains.force_y[i] + loads[i]);
-    system.add_grain_force(i, 2, grains.torque[i]);
-  }
-  for (const Contact &contact : scene.contacts.contacts)
-  {
-    const LinearContact &law = scene.contacts.law(grains, contact);
-    const Vec2 branch =
-        grains.reference(contact.second) - grains.reference(contact.first);
-    system.add_pair_spring(contact.first, contact.second, (1. / norm(branch)) * branch,
-                           normal_stiffness(law, grains.radius[contact.first],
-                                            grains.radius[contact.second]));
-  }
-  if (scene.mesh)
-  {
-    for (std::size_t dof = 0; dof < scene.solid->dof_handler().n_dofs(); ++dof)
-      system.add_mesh_force(dof, installed.mesh_force(dof) + mesh_loads(dof));
-    for (const coupling::PrescribedDof &entry : scene.mesh->prescribed)
-      system.fix_mesh(entry.dof, 0.);
-    if (scene.parameters.has("foundation"))
-      for (const auto dof : scene.solid->locally_owned())
-        if (scene.solid->component(dof) == 1 &&
-            scene.solid->support_point(dof)[1] <
-                scene.geometry.base() + 1e-9 * scene.geometry.length())
-          system.fix_mesh(dof, 0.);
-  }
-  else
-  {
-    // The base holds y; one grain of it keeps the section from drifting along x.
-    const auto base = base_grains(*scene.grains, scene.geometry);
-    for (const auto &[i, width] : base)
-      system.fix_grain(i, 1, 0.);
-    system.fix_grain(base[base.size() / 2].first, 0, 0.);
-  }
+    held[i] = {static_cast<std::int32_t>(i),
+               {-grains.force_x[i], -grains.force_y[i] - loads[i]},
+               -grains.torque[i]};
+  return held;
+}
 
-  const coupling::StaticSolution u = system.solve();
-  for (std::size_t j = 0; j < joints.size(); ++j)
+/// Turn the prestress of joints that cannot break into resultants on their grains.
+void take_from_unbreakable(Scene &scene, std::vector<coupling::GrainLoad> &held)
+{
+  Joints &joints = scene.grains->state.joints;
+  bool all = true;
+  for (const JointGroup &group : joints.groups)
   {
-    const auto rows = coupling::joint_rows(joints, j);
-    const std::size_t one = joints.first[j], two = joints.second[j];
-    const double ends[6] = {u.ux[one], u.uy[one], u.rotation[one],
-                            u.ux[two], u.uy[two], u.rotation[two]};
-    double change[3] = {0., 0., 0.};
-    for (int row = 0; row < 3; ++row)
-      for (int k = 0; k < 6; ++k)
-        change[row] += rows[row][k] * ends[k];
-    joints.initial_gap[j] += change[0];
-    joints.initial_shear[j] += change[1];
-    joints.initial_rotation[j] += change[2];
+    all = all && !group.law.breakable;
+    if (group.law.breakable)
+      continue;
+    for (std::size_t j = group.begin; j < group.end; ++j)
+    {
+      const JointForce &force = joints.force[j];
+      coupling::GrainLoad &one = held[joints.first[j]], &two = held[joints.second[j]];
+      one.force += Vec2{-force.x, -force.y};
+      one.torque += force.torque1;
+      two.force += Vec2{force.x, force.y};
+      two.torque += force.torque2;
+      joints.initial_gap[j] = joints.initial_shear[j] = joints.initial_rotation[j] = 0.;
+    }
   }
-  for (Contacts::Installed &pair : scene.contacts.installed)
-  {
-    const Vec2 branch = grains.reference(pair.second) - grains.reference(pair.first);
-    const Vec2 relative{u.ux[pair.second] - u.ux[pair.first],
-                        u.uy[pair.second] - u.uy[pair.first]};
-    pair.reference_gap -= dot(branch, relative) / norm(branch);
-  }
-  if (!scene.contacts.installed.empty())
-  {
-    scene.contacts.contacts.clear();
-    search_contacts(grains, joints, scene.contacts);
-  }
-  if (scene.mesh)
-    scene.solid->add_internal_force(u.mesh, installed.mesh_force);
+  if (all)
+    for (std::vector<double> *v :
+         {&joints.initial_gap, &joints.initial_shear, &joints.initial_rotation})
+      v->clear();
 }
 } // namespace
 
@@ -314,6 +265,8 @@ InstalledPrestress install_prestress(Scene &scene, const continuum::Vector &load
   const Prestress prestress = prestress_of(scene);
   InstalledPrestress installed;
   if (scene.mesh)
+  {
+    // Free nodes are at rest; the walls feel the pressure of the mesh beside them.
     installed.mesh_force = continuum::prestress(*scene.solid,
                                                 [&](const dealii::Point<2> &x)
                                                 {
@@ -322,6 +275,10 @@ InstalledPrestress install_prestress(Scene &scene, const continuum::Vector &load
                                                       -prestress.pressure(x[1]);
                                                   return stress;
                                                 });
+    for (const auto dof : scene.solid->locally_owned())
+      if (scene.mesh->inverse_mass(dof) > 0.)
+        installed.mesh_force(dof) = -loads(dof);
+  }
   if (scene.grains)
   {
     const Grains &grains = scene.grains->state.grains;
@@ -331,8 +288,8 @@ InstalledPrestress install_prestress(Scene &scene, const continuum::Vector &load
     guess_joints(scene, prestress, factor);
     guess_contacts(scene, prestress, factor);
     press_walls(scene, prestress);
-    const std::vector<double> forces = grain_loads(scene, prestress, installed);
-    relax(scene, forces, loads, installed);
+    installed.grain_loads = holding_forces(scene, external_forces(scene));
+    take_from_unbreakable(scene, installed.grain_loads);
   }
   return installed;
 }

@@ -315,11 +315,8 @@ void add_loads(Scene &scene)
   const InstalledPrestress installed = install_prestress(scene, all);
   if (scene.mesh)
   {
-    continuum::Vector force = installed.mesh_force;
-    if (p.has("foundation"))
-      force += continuum::pressure(*scene.solid, {continuum::boundary::bottom},
-                                   prestress_of(scene).pressure(scene.geometry.base()));
-    add(std::make_unique<MeshLoads>(*scene.mesh, force, true), "prestress");
+    add(std::make_unique<MeshLoads>(*scene.mesh, installed.mesh_force, true),
+        "prestress");
   }
   if (!scene.grains)
     return;
@@ -332,20 +329,12 @@ void add_loads(Scene &scene)
     add(std::make_unique<GrainGravity>(state, p.gravity.acceleration, weight), "gravity");
   if (p.has("surface pressure") && !scene.mesh)
   {
-    std::vector<std::pair<std::int32_t, Vec2>> chain;
+    std::vector<GrainLoad> chain;
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
-      chain.emplace_back(i, Vec2{0., -p.surface_pressure.pressure * width});
+      chain.push_back({i, {0., -p.surface_pressure.pressure * width}, 0.});
     add(std::make_unique<GrainLoads>(state, chain), "surface pressure");
   }
-  if (!installed.grain_base_force.empty())
-  {
-    std::vector<std::pair<std::int32_t, Vec2>> base;
-    for (std::size_t i = 0; i < installed.grain_base_force.size(); ++i)
-      if (installed.grain_base_force[i] != 0.)
-        base.emplace_back(static_cast<std::int32_t>(i),
-                          Vec2{0., installed.grain_base_force[i]});
-    add(std::make_unique<GrainLoads>(state, base), "prestress");
-  }
+  add(std::make_unique<GrainLoads>(state, installed.grain_loads, true), "prestress");
 }
 
 /// Damping, motion, walls and constraint: what both sides share.

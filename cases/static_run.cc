@@ -1,5 +1,6 @@
 #include "cases/static_run.h"
 
+#include "cases/prestress.h"
 #include "cases/recorder.h"
 #include "cases/scene.h"
 #include "cases/summary.h"
@@ -69,6 +70,9 @@ int run_static(const Parameters &p,
     solid.add_to_stiffness(continuum::winkler_foundation(
         solid, {continuum::boundary::bottom},
         p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness));
+
+  if (p.has("gravity") || p.has("surface pressure"))
+    load += install_prestress(*scene, load).mesh_force;
 
   const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
   std::optional<coupling::Table> history;

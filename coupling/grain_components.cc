@@ -258,18 +258,27 @@ void GrainGravity::add_energies(Energies &energies) const
 
 void GrainLoads::run(const Stage, const Clock &)
 {
-  for (const auto &[i, force] : forces_)
+  Grains &grains = state_.grains;
+  for (const GrainLoad &load : loads_)
   {
-    state_.grains.force_x[i] += force.x;
-    state_.grains.force_y[i] += force.y;
+    grains.force_x[load.grain] += load.force.x;
+    grains.force_y[load.grain] += load.force.y;
+    grains.torque[load.grain] += load.torque;
   }
 }
 
 void GrainLoads::add_energies(Energies &energies) const
 {
-  for (const auto &[i, force] : forces_)
-    energies.boundary_work += force.x * state_.grains.displacement_x[i] +
-                              force.y * state_.grains.displacement_y[i];
+  const Grains &grains = state_.grains;
+  double work = 0.;
+  for (const GrainLoad &load : loads_)
+    work += load.force.x * grains.displacement_x[load.grain] +
+            load.force.y * grains.displacement_y[load.grain] +
+            load.torque * grains.rotation[load.grain];
+  if (is_prestress_)
+    energies.strain_grains -= work;
+  else
+    energies.boundary_work += work;
 }
 
 void GrainBase::run(const Stage, const Clock &)

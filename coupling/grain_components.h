@@ -128,13 +128,23 @@ private:
   std::vector<double> force_; ///< downward [N]
 };
 
-/// Vertical forces that do not change (surface pressure on the outer chain of grains).
+/// A force on a grain that does not change.
+struct GrainLoad
+{
+  std::int32_t grain = 0;
+  Vec2 force;         ///< [N]
+  double torque = 0.; ///< [N m]
+};
+
+/// Forces that do not change: surface pressure on the outer chain of grains; or those of
+/// an installed prestress, whose work is strain energy, not work of the boundary.
 class GrainLoads : public Component
 {
 public:
-  GrainLoads(GrainState &state, std::vector<std::pair<std::int32_t, Vec2>> forces)
+  GrainLoads(GrainState &state, std::vector<GrainLoad> loads, bool is_prestress = false)
       : state_(state)
-      , forces_(std::move(forces))
+      , loads_(std::move(loads))
+      , is_prestress_(is_prestress)
   {
   }
   void run(Stage stage, const Clock &clock) override;
@@ -142,7 +152,8 @@ public:
 
 private:
   GrainState &state_;
-  std::vector<std::pair<std::int32_t, Vec2>> forces_;
+  std::vector<GrainLoad> loads_;
+  bool is_prestress_;
 };
 
 /// Support of base grains, x free: a Winkler spring in y, or (stiffness infinite) no

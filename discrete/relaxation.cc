@@ -14,7 +14,7 @@ namespace
 constexpr double wide_skin = 0.2, narrow_skin = 0.06;
 constexpr std::size_t creep = 200;   // steps that a list has served when disks creep
 constexpr double largest_move = 0.1; // of a disk in a step
-constexpr double largest_step = 0.4; // the fastest mode of six contacts allows 0.58
+constexpr double largest_step = 0.5; // the fastest mode of six contacts allows 0.58
 constexpr double first_step = 0.1;
 constexpr std::size_t check_interval = 20;
 constexpr std::size_t most_steps = 2000000;

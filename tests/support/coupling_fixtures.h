@@ -149,6 +149,7 @@ struct Bridged
   std::optional<MeshState> mesh;
   std::unique_ptr<BridgingDomain> domain;
   std::vector<discrete::Wall> walls;
+  unsigned int degree = 1; ///< of the cells
 
   /// One thread: these models are too small to share out.
   Bridged() { omp_set_num_threads(1); }
@@ -173,7 +174,7 @@ struct Bridged
     state.joints.weight = joint_weights(state.grains, state.joints, weight);
     state.breaking = false;
     solid = std::make_unique<continuum::ElasticSolid>(
-        triangulation, std::vector<continuum::ElasticMaterial>{material}, 1,
+        triangulation, std::vector<continuum::ElasticMaterial>{material}, degree,
         [w = weight](const dealii::Point<2> &x) {
           return w.mesh({x[0], x[1]});
         });
@@ -232,6 +233,7 @@ struct BlockShape
   double h = 2., w = 8., rim = 8.;   ///< cell, overlap, plain mesh [d]
   bool cubic = false;
   double mesh_modulus_ratio = 1.;
+  unsigned int degree = 1; ///< of the cells
 };
 
 inline void make_block_mesh(Bridged &model, const BlockShape &shape)
@@ -256,6 +258,7 @@ inline void make_lattice_block(Bridged &model, const BlockShape &shape)
   model.state.grains =
       hexagonal_lattice(box, {0.137, 0.271}, // in general position to the cells
                         [&](const Vec2 &x) { return model.weight.holds_grains(x); });
+  model.degree = shape.degree;
   const FlatJoint law = elastic_law();
   continuum::ElasticMaterial material = lattice_material(law);
   for (auto &row : material.stiffness)

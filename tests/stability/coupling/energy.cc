@@ -151,6 +151,25 @@ TEST(BridgedStep, IsThatOfTheGrainsAlone)
   }
 }
 
+TEST(BridgedStep, QuadraticCellsHavePositiveMassAndKeepTheirEnergy)
+{
+  for (const bool cubic : {false, true})
+  {
+    BlockShape shape = small_block(cubic);
+    shape.degree = 2;
+    Bridged model;
+    build(model, shape);
+    for (unsigned int dof = 0; dof < model.n_mesh_dofs(); ++dof)
+      EXPECT_GT(model.mesh->mass(dof), 0.);
+    std::printf("  Q2, %s: grains %.4f, mesh %.4f\n", cubic ? "cubic" : "linear",
+                model.grain_step(), model.mesh_step());
+    white_noise(model, amplitude, 8);
+    const History h = history(model, 0.99 * model.stable_step(), 5000, 100);
+    EXPECT_LE(h.drift, 5e-4);
+    EXPECT_LE(h.gap, 1e-10);
+  }
+}
+
 TEST(BridgedStep, NoiseStaysBoundedBelowTheLimitAndGrowsAboveIt)
 {
   for (const bool cubic : {false, true})

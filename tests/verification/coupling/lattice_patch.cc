@@ -174,6 +174,17 @@ TEST(LatticePatch, CubicRampKeepsUniformStrain)
   EXPECT_GT(error.mesh, 1e-4);
 }
 
+TEST(LatticePatch, QuadraticCellsKeepUniformStrain)
+{
+  // Multipliers stay on the vertices; the demand is that of bilinear cells.
+  BlockShape shape = block(8., true);
+  shape.degree = 2;
+  const PatchError error = patch_error(shape);
+  EXPECT_LE(error.strain, 5e-4);
+  EXPECT_LE(error.force, 1.5e-3);
+  EXPECT_LE(error.mesh, 1e-2);
+}
+
 TEST(LatticePatch, ErrorFallsWithTheWidthOfTheOverlap)
 {
   const PatchError wide = patch_error(block(8., false)),

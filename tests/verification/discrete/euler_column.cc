@@ -3,6 +3,7 @@
 // against pi^2 D / L^2 with D measured in pure bending of the same column.
 #include "support/grain_fixtures.h"
 
+#include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
