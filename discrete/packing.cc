@@ -32,7 +32,7 @@ constexpr double final_tolerance = 1e-6;
 constexpr double parted = 0.05;            // mean overlap over target: not jammed
 constexpr double overlap_tolerance = 0.03; // of the target overlap
 // Gaps may change by this between the search and the final state.
-constexpr double gap_margin = 4e-3;
+constexpr double gap_margin = 0.01;
 // The largest overlap is six to eight times the mean one; where it exceeds this part of
 // the smallest radius, the pressure is let down by a factor.
 constexpr double largest_overlap = 0.0099;
@@ -202,7 +202,7 @@ jammed(const Vessel &vessel, const std::size_t n, const PackingParameters &p)
   for (int pass = 0; pass < 30; ++pass)
   {
     install();
-    remove_floaters(relaxation, growth, gap - gap_margin, install);
+    remove_floaters(relaxation, growth, std::max(0.8 * gap, gap - gap_margin), install);
     const ContactState state = relaxation.relax(final_tolerance, parted * target);
     if (state.largest_overlap > largest_overlap * smallest_radius(relaxation.disks()))
       target *= less_pressure;
