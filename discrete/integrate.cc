@@ -1,5 +1,7 @@
 #include "discrete/integrate.h"
 
+#include "discrete/threading.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +38,7 @@ void compute_damping(const Grains &grains,
   const double *const r_x = rx.data(), *const r_y = ry.data(), *const r_t = torque.data();
   double *const fx = damping.force_x.data(), *const fy = damping.force_y.data();
   double *const moment = damping.torque.data(), *const energy = damping.energy.data();
-#pragma omp parallel for simd schedule(static)
+#pragma omp parallel for simd schedule(static) if (n >= threads_from_grains)
   for (std::int64_t i = 0; i < n; ++i)
   {
     const double x = opposing(alpha, r_x[i], vx[i]);
@@ -57,7 +59,7 @@ void book_damping(const Grains &grains, const double dt, GrainDamping &damping)
   const double *const fx = damping.force_x.data(), *const fy = damping.force_y.data();
   const double *const moment = damping.torque.data();
   double *const energy = damping.energy.data();
-#pragma omp parallel for simd schedule(static)
+#pragma omp parallel for simd schedule(static) if (n >= threads_from_grains)
   for (std::int64_t i = 0; i < n; ++i)
     energy[i] -= 0.5 * dt * (fx[i] * vx[i] + fy[i] * vy[i] + moment[i] * spin[i]);
 }
@@ -91,7 +93,7 @@ void kick(Grains &grains, const double dt, const GrainDamping *damping)
   const double *const m = grains.inverse_mass.data();
   const double *const j = grains.inverse_inertia.data();
   const bool damped = damping != nullptr;
-#pragma omp parallel
+#pragma omp parallel if (n >= threads_from_grains)
   {
     kick_component(n, dt, m, grains.force_x.data(),
                    damped ? damping->force_x.data() : nullptr, grains.velocity_x.data());
@@ -110,7 +112,7 @@ void drift(Grains &grains, const double dt)
   double *const ux = grains.displacement_x.data(), *const uy =
                                                        grains.displacement_y.data();
   double *const rotation = grains.rotation.data();
-#pragma omp parallel for simd schedule(static)
+#pragma omp parallel for simd schedule(static) if (n >= threads_from_grains)
   for (std::int64_t i = 0; i < n; ++i)
   {
     ux[i] += dt * vx[i];

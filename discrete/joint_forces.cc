@@ -1,6 +1,7 @@
 #include "discrete/joint_damage.h"
 #include "discrete/joint_kernel.h"
 #include "discrete/joints.h"
+#include "discrete/threading.h"
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +135,7 @@ void sum_joint_forces(Grains &grains, Joints &joints)
   for (const DamagedJoint &damaged : joints.damaged)
     joints.force[damaged.joint] = damaged.force;
   const auto n = static_cast<std::int64_t>(grains.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (n >= threads_from_grains)
   for (std::int64_t i = 0; i < n; ++i)
   {
     double fx = 0., fy = 0., torque = 0.;
@@ -159,38 +160,42 @@ void evaluate_bonds(const Grains &grains,
 {
   const KernelLevel &level = kernel_level();
   const auto n_grains = static_cast<std::int64_t>(grains.size());
+  constexpr auto block_size = static_cast<std::int64_t>(intact_block);
   static thread_local std::vector<GrainLine> lines; // scratch: refilled at every call
   lines.resize(grains.size());
   GrainLine *const line = lines.data();
-#pragma omp parallel for schedule(static)
-  for (std::int64_t block = 0; block < n_grains; block += 1024)
-    level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
-                grains.rotation.data(), line, block, std::min(block + 1024, n_grains));
-
+  std::vector<IntactKernelInput> input;
+  for (const JointGroup &group : joints.groups)
+    input.push_back(kernel_input(joints, group, lines, new_cracks != nullptr));
   std::vector<std::vector<std::int32_t>> over(joints.groups.size());
-  for (std::size_t g = 0; g < joints.groups.size(); ++g)
+
+  // One parallel region: threads wait for one another between lines and joints only.
+#pragma omp parallel if (n_grains >= threads_from_grains)
   {
-    const JointGroup &group = joints.groups[g];
-    const IntactKernelInput in =
-        kernel_input(joints, group, lines, new_cracks != nullptr);
-    const auto begin = static_cast<std::int64_t>(group.begin);
-    const auto end = static_cast<std::int64_t>(group.end);
-#pragma omp parallel for schedule(static)
-    for (std::int64_t block = begin; block < end;
-         block += static_cast<std::int64_t>(intact_block))
+#pragma omp for schedule(static)
+    for (std::int64_t block = 0; block < n_grains; block += 256)
+      level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
+                  grains.rotation.data(), line, block, std::min(block + 256, n_grains));
+    for (std::size_t g = 0; g < joints.groups.size(); ++g)
     {
-      std::int32_t block_over[intact_block];
-      const std::size_t n = level.intact(
-          in, block, std::min(block + static_cast<std::int64_t>(intact_block), end),
-          block_over);
-      if (n > 0)
+      const auto begin = static_cast<std::int64_t>(joints.groups[g].begin);
+      const auto end = static_cast<std::int64_t>(joints.groups[g].end);
+#pragma omp for schedule(static) nowait
+      for (std::int64_t block = begin; block < end; block += block_size)
       {
+        std::int32_t block_over[intact_block];
+        const std::size_t n =
+            level.intact(input[g], block, std::min(block + block_size, end), block_over);
+        if (n > 0)
+        {
 #pragma omp critical(antiform_over)
-        over[g].insert(over[g].end(), block_over, block_over + n);
+          over[g].insert(over[g].end(), block_over, block_over + n);
+        }
       }
     }
-    std::sort(over[g].begin(), over[g].end());
   }
+  for (std::vector<std::int32_t> &some : over)
+    std::sort(some.begin(), some.end());
 
   if (new_cracks != nullptr)
     for (std::size_t g = 0; g < joints.groups.size(); ++g)

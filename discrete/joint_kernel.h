@@ -46,7 +46,8 @@ using LineKernel = void (*)(const double *x,
                             std::size_t begin,
                             std::size_t end);
 
-constexpr std::size_t intact_block = 256;
+/// Joints of one call: their columns, their grains and their results fit the first cache.
+constexpr std::size_t intact_block = 64;
 
 /// The kernels of one vector level; this translation unit is compiled once per level.
 struct KernelLevel

@@ -1,3 +1,5 @@
+#include "discrete/threading.h"
+
 #include "support/grain_fixtures.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +35,7 @@ ExplicitRun breaking_run(const int threads, const int steps)
 {
   const Threads scope(threads);
   Sample sample;
-  sample.grains = random_pack(44, 44, 61);
+  sample.grains = random_pack(48, 48, 61); // enough for threads
   bond_all(sample, breaking_law());
   shake(sample.grains, 0.6, 0.6, 62);
   ExplicitRun run(sample);
@@ -116,6 +118,7 @@ std::vector<Crack> by_place(std::vector<Crack> cracks)
 
 TEST(Determinism, OneAndTwoThreadsGiveTheSameBits)
 {
+  static_assert(48 * 48 >= threads_from_grains, "the sample is too small for threads");
   const ExplicitRun one = breaking_run(1, 600), two = breaking_run(2, 600);
   const Grains &a = one.sample.grains, &b = two.sample.grains;
   EXPECT_TRUE(same_bits(a.displacement_x, b.displacement_x));

@@ -99,7 +99,8 @@ for number in run.step_numbers:
     assert len(frame.continuum.quads()) == sizes['cells']
     assert frame.grains.field('radius_m').min() > 0
 assert len(frame.cracks.points) == results['crack_count']['value']
-assert abs(frame.time - results['shortening']['value']) < 1e-12
+# The last frame is written a step after the last sample.
+assert abs(frame.time / results['shortening']['value'] - 1) < 1e-3
 )";
   const std::string file = folder_->path("read.py");
   std::ofstream(file) << script;

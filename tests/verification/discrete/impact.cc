@@ -44,7 +44,7 @@ Impact impact(const int steps, const LinearContact &law, const double speed = 0.
   };
   Impact result;
   double start = 0., end = 0., last = gap(), first_kinetic = 0., kinetic = 0.;
-  for (int i = 0; i < 20 * steps; ++i)
+  for (int i = 0; i < 3 * steps; ++i)
   {
     run.first_half(dt);
     if (i == 0)
