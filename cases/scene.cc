@@ -486,9 +486,11 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
       for (discrete::WallContact &contact : wall.contacts)
         contact.weight = weight.grains(state.grains.reference(contact.grain));
     const double cell = p.matrix.cell_size * scene->geometry.diameter();
+    // Vertices beyond the rim that fewer grains reach than there are vertices would make
+    // the constraint singular.
     scene->bridging = std::make_unique<BridgingDomain>(
         state.grains, state.joints, *scene->solid, weight,
-        0.02 * scene->grains->matrix->bulk_density * cell * cell);
+        0.1 * scene->grains->matrix->bulk_density * cell * cell);
     scene->mass_weight = scene->bridging->grain_mass_weight();
   }
 
