@@ -188,8 +188,8 @@ TEST(StableStep, StaysABoundWithWeightsAndScaledDensity)
 
 TEST(StableStep, IsReachedByDensityScaling)
 {
-  // m* >= k dt0^2 with k the sum over the joints of a grain makes every joint's share of
-  // inertia large enough: omega^2 <= (2 k_s / (k_n + k_s) + 2) / dt0^2 <= 4 / dt0^2.
+  // m* >= k dt0^2, J* >= 1.5 k dt0^2 with k the sums over the joints of a grain:
+  // omega^2 dt0^2 <= 2 k_s / (k_n + k_s) + 4/3 < 4 in the element-wise bound.
   Sample sample;
   sample.grains = random_pack(6, 6, 15);
   bond_all(sample, strong_law());

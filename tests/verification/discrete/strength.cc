@@ -189,6 +189,32 @@ TEST(JointStrength, TheLimitReachedFirstWithinTheStepDecides)
   EXPECT_EQ(mode(-580e6), Bond::broken_in_shear);
 }
 
+TEST(JointStrength, CountsThePrestressIn)
+{
+  Sample pair = bonded_pair(rock_1(), R1, R2);
+  const double k = pair.joints.stiffness[0], k_s = k / 2.2;
+  pair.joints.initial_gap = {-20e6 / k};
+  pair.joints.initial_shear = {30e6 / k_s};
+  pair.joints.initial_rotation = {0.};
+  const double shear = first_break(
+                           pair,
+                           [](const double u) {
+                             return JointDeformation{0., u, 0.};
+                           },
+                           2e-5)
+                           .before.shear;
+  const double strength = 60e6 + 20e6 * pair.joints.groups[0].law.tan_friction;
+  EXPECT_NEAR(shear / (2. * R2) / strength, 1., 1e-9); // bisection's round-off
+  const double tension = first_break(
+                             pair,
+                             [](const double g) {
+                               return JointDeformation{g, 0., 0.};
+                             },
+                             1e-5)
+                             .before.normal;
+  EXPECT_NEAR(tension / (2. * R2) / 15e6, 1., 1e-9);
+}
+
 TEST(JointStrength, CrackRecordSaysWhereAndHow)
 {
   Sample pair = bonded_pair(rock_1(3), R1, R1, 0., M_PI / 6.);

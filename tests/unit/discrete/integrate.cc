@@ -1,0 +1,117 @@
+#include "discrete/integrate.h"
+
+#include "support/grain_fixtures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace antiform::discrete::test
+{
+namespace
+{
+/// Three grains with velocities of either sign and of none, and a force on each.
+struct MovingGrains
+{
+  Grains grains;
+  GrainDamping damping;
+  MovingGrains()
+  {
+    for (const double radius : {0.5, 0.4, 0.3})
+      grains.add({2. * radius, 0.}, radius, 1., 0);
+    grains.velocity_x = {0.2, -0.3, 0.};
+    grains.velocity_y = {-0.1, 0., 0.4};
+    grains.spin = {0., 0.5, -0.6};
+    grains.force_x = {3., 4., 5.};
+    grains.force_y = {-6., 7., -8.};
+    grains.torque = {1., -2., 3.};
+    damping.coefficient = 0.7;
+  }
+};
+} // namespace
+
+TEST(GrainDamping, OpposesTheVelocityByAShareOfTheForce)
+{
+  MovingGrains moving;
+  const Grains &g = moving.grains;
+  compute_damping(g, g.force_x, g.force_y, g.torque, 0.1, moving.damping);
+  const double a = 0.7;
+  EXPECT_EQ(moving.damping.force_x, (std::vector<double>{-a * 3., a * 4., 0.}));
+  EXPECT_EQ(moving.damping.force_y, (std::vector<double>{a * 6., 0., -a * 8.}));
+  EXPECT_EQ(moving.damping.torque, (std::vector<double>{0., -a * 2., a * 3.}));
+}
+
+TEST(GrainDamping, BooksTheWorkOfTheMeanVelocity)
+{
+  MovingGrains moving;
+  Grains &g = moving.grains;
+  const double dt = 0.1;
+  const GrainVelocities before = velocities(g);
+  compute_damping(g, g.force_x, g.force_y, g.torque, dt, moving.damping);
+  kick(g, dt, &moving.damping);
+  book_damping(g, dt, moving.damping);
+  for (std::size_t i = 0; i < g.size(); ++i)
+  {
+    const double work = 0.5 * dt *
+                        (moving.damping.force_x[i] * (before.x[i] + g.velocity_x[i]) +
+                         moving.damping.force_y[i] * (before.y[i] + g.velocity_y[i]) +
+                         moving.damping.torque[i] * (before.spin[i] + g.spin[i]));
+    EXPECT_NEAR(moving.damping.energy[i], -work, 1e-15); // round-off
+  }
+}
+
+TEST(Kick, AcceleratesByForceAndDampingOverInertia)
+{
+  MovingGrains moving;
+  Grains &g = moving.grains;
+  hold(g, 1);
+  moving.damping.force_x = {0.5, 0.5, 0.5};
+  moving.damping.force_y = moving.damping.torque = {0., 0., 0.};
+  const Grains before = g;
+  kick(g, 0.1, &moving.damping);
+  for (const std::size_t i : {0, 2})
+  {
+    EXPECT_DOUBLE_EQ(g.velocity_x[i],
+                     before.velocity_x[i] + 0.1 * (before.force_x[i] + 0.5) / g.mass[i]);
+    EXPECT_DOUBLE_EQ(g.velocity_y[i],
+                     before.velocity_y[i] + 0.1 * before.force_y[i] / g.mass[i]);
+    EXPECT_DOUBLE_EQ(g.spin[i], before.spin[i] + 0.1 * before.torque[i] / g.inertia[i]);
+  }
+  EXPECT_EQ(g.velocity_x[1], -0.3); // prescribed motion goes on as it is
+  EXPECT_EQ(g.spin[1], 0.5);
+}
+
+TEST(Drift, MovesByTheVelocities)
+{
+  MovingGrains moving;
+  drift(moving.grains, 0.5);
+  EXPECT_EQ(moving.grains.displacement_x, (std::vector<double>{0.1, -0.15, 0.}));
+  EXPECT_EQ(moving.grains.displacement_y, (std::vector<double>{-0.05, 0., 0.2}));
+  EXPECT_EQ(moving.grains.rotation, (std::vector<double>{0., 0.25, -0.3}));
+}
+
+TEST(KineticEnergy, IsThatOfTheTwoHalfStepVelocities)
+{
+  Grains g;
+  g.add({0., 0.}, 0.5, 1., 0);
+  g.velocity_x = {0.4};
+  g.spin = {0.2};
+  const GrainVelocities before{{0.3}, {0.}, {0.1}};
+  EXPECT_DOUBLE_EQ(kinetic_energy(g, before),
+                   0.5 * g.mass[0] * 0.3 * 0.4 + 0.5 * g.inertia[0] * 0.1 * 0.2);
+  hold(g, 0);
+  EXPECT_EQ(kinetic_energy(g, before), 0.);
+}
+
+TEST(DensityScaling, RaisesInertiaOnlyWhereTheStepAsksForIt)
+{
+  Grains g;
+  g.add({0., 0.}, 0.5, 1., 0);
+  g.add({0., 0.}, 0.5, 1., 0);
+  scale_density(g, {1., 1e6}, {1., 1e6}, {0.5, 0.25}, 0.01);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_mass[0], 0.5 * g.mass[0]);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[0], 0.5 * g.inertia[0]);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_mass[1], 0.25 * 100.);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[1], 0.25 * 150.); // half as much again
+}
+} // namespace antiform::discrete::test
