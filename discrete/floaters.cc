@@ -41,12 +41,15 @@ neighbour_lists(const std::vector<Disk> &disks,
   return lists;
 }
 
-bool fits(const Disk &disk, const std::vector<Disk> &around, const PolygonEdges *edges)
+bool fits(const Disk &disk,
+          const std::vector<Disk> &around,
+          const Confinement &confinement)
 {
   for (const Disk &other : around)
     if (norm(other.centre - disk.centre) < disk.radius + other.radius - clearance)
       return false;
-  return edges == nullptr || edges->depth(disk.centre) >= disk.radius - clearance;
+  return confinement.edges == nullptr ||
+         confinement.edges->depth(disk.centre) >= disk.radius - clearance;
 }
 
 /// The smallest disk that touches three of @p around, is no smaller than @p disk and at
@@ -54,7 +57,7 @@ bool fits(const Disk &disk, const std::vector<Disk> &around, const PolygonEdges 
 Disk grown(const Disk &disk,
            const double limit,
            const std::vector<Disk> &around,
-           const PolygonEdges *edges)
+           const Confinement &confinement)
 {
   std::vector<Disk> near;
   for (const Disk &other : around)
@@ -68,7 +71,7 @@ Disk grown(const Disk &disk,
           if (candidate.radius >= disk.radius && candidate.radius <= limit &&
               (best.radius == 0. || candidate.radius < best.radius) &&
               norm(candidate.centre - disk.centre) <= longest_move &&
-              fits(candidate, around, edges))
+              fits(candidate, around, confinement))
             best = candidate;
   return best;
 }
@@ -148,7 +151,7 @@ FloaterChange settle_floaters(std::vector<Disk> &disks,
       if (!deleted[j])
         around.push_back({disks[j].centre + shift, disks[j].radius});
     const double limit = disks[i].radius * largest_growth / growth[i];
-    const Disk better = grown(disks[i], limit, around, confinement.edges);
+    const Disk better = grown(disks[i], limit, around, confinement);
     const double factor = swelling(disks[i], around, gap);
     if (better.radius > 0.)
     {

@@ -26,6 +26,7 @@ constexpr double wall_void = 0.08;
 // that is approached from above is jammed all the way.
 constexpr double first_compression = 0.02;
 constexpr double coarse_tolerance = 1e-2;   // unbalanced ratio of the compressed cloud
+constexpr double halfway = 5.;              // mean overlap over target
 constexpr double approach_tolerance = 2e-3; // on the way to the target overlap
 constexpr double search_tolerance = 1e-3;   // while radii are sought
 constexpr double final_tolerance = 1e-6;
@@ -225,11 +226,18 @@ jammed(const Vessel &vessel, const std::size_t n, const PackingParameters &p)
   relaxation.scale(1. + first_compression);
   relaxation.relax(coarse_tolerance, parted * p.target_overlap);
   // While the packing is compressed, contacts are many: a swelling or lost grain disturbs
-  // its neighbours only. Gaps will open by about twice the compression.
+  // its neighbours only. So most floaters are settled before the last contacts open; the
+  // gaps that will open until then are allowed for.
   std::vector<double> growth(n, 1.);
   const double gap = 0.5 * p.installation_gap_ratio;
-  remove_floaters(relaxation, growth, gap - std::min(0.5 * gap, 2. * first_compression),
-                  [&] { relaxation.relax(coarse_tolerance, parted * p.target_overlap); });
+  const auto settle = [&](const double opening, const double tolerance)
+  {
+    remove_floaters(relaxation, growth, std::max(0.5 * gap, gap - opening),
+                    [&] { relaxation.relax(tolerance, parted * p.target_overlap); });
+  };
+  settle(2. * first_compression, coarse_tolerance);
+  install_overlap(relaxation, halfway * p.target_overlap);
+  settle(first_compression, approach_tolerance);
 
   const double target = p.target_overlap;
   const auto install = [&] { install_overlap(relaxation, target); };

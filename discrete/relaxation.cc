@@ -94,6 +94,7 @@ ContactState Relaxation::add_forces()
     }
     force_[i] = total;
   }
+  state.largest_overlap = largest;
   sum_contact_force_ = sum;
   n_contacts_ = state.touching;
   for (std::size_t k = 0; k < edge_disk_.size(); ++k)
@@ -104,12 +105,11 @@ ContactState Relaxation::add_forces()
     for (const EdgeContact &c : contacts_)
     {
       force_[i] += c.overlap * c.normal;
-      largest = std::max(largest, c.overlap);
       sum_contact_force_ += c.overlap;
       ++n_contacts_;
+      state.largest_overlap = std::max(state.largest_overlap, c.overlap);
     }
   }
-  state.largest_overlap = largest;
   if (state.touching > 0)
     state.mean_overlap = sum / static_cast<double>(state.touching);
   return state;

@@ -62,10 +62,10 @@ std::vector<Vec2> rectangle(const double width, const double height, const doubl
   return polygon;
 }
 
-/// A wave of a layer with vertical ends; lengths in mean diameters.
-std::vector<Vec2> bent_layer(const double length, const int n)
+/// A wavy layer with vertical ends at crests; lengths in mean diameters.
+std::vector<Vec2> bent_layer(const double length, const int n, const double wave)
 {
-  const double thickness = 12., amplitude = 10., wave = 60.;
+  const double thickness = 12., amplitude = wave / 10.;
   std::vector<Vec2> polygon;
   const auto axis = [&](const double x)
   { return amplitude * std::cos(2. * M_PI * x / wave); };
@@ -202,7 +202,7 @@ TEST(PolygonPacking, OrientationOfTheOutlineDoesNotMatter)
 
 TEST(PolygonPacking, BentLayerIsFilledToItsEdges)
 {
-  const std::vector<Vec2> polygon = bent_layer(60., 80);
+  const std::vector<Vec2> polygon = bent_layer(60., 80, 60.);
   const Packing packing = pack_polygon(polygon, parameters());
   expect_quality(packing.disks, packing.quality);
   expect_inside(packing.disks, polygon);
@@ -211,7 +211,7 @@ TEST(PolygonPacking, BentLayerIsFilledToItsEdges)
 
 TEST(PolygonPacking, LayerOfFiveHundredDiametersMeetsTheCheckListLong)
 {
-  const std::vector<Vec2> polygon = bent_layer(500., 500);
+  const std::vector<Vec2> polygon = bent_layer(500., 500, 125.);
   const Packing packing = pack_polygon(polygon, parameters());
   expect_quality(packing.disks, packing.quality);
   expect_inside(packing.disks, polygon);
