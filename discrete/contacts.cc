@@ -28,7 +28,7 @@ JointOfPair joint_of_pair(const Grains &grains,
     return {};
   for (std::int32_t k = joints.grain_begin[i]; k < joints.grain_begin[i + 1]; ++k)
   {
-    const std::int32_t joint = joints.grain_joint[k] >> 1;
+    const std::int32_t joint = joints.grain_joint[k];
     if (joints.first[joint] != j && joints.second[joint] != j)
       continue;
     const std::int32_t damage = joints.damage[joint];

@@ -71,26 +71,45 @@ void lines(const double *x,
   }
 }
 
+/// Relative displacements and half angles of some joints' grains, as columns.
+struct alignas(64) Columns
+{
+  double ux[N], uy[N], theta[N], c1[N], s1[N], c2[N], s2[N];
+};
+
+void gather(const IntactKernelInput &in,
+            const std::size_t begin,
+            const std::size_t n,
+            Columns &columns)
+{
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const GrainLine &one = in.grains[in.first[begin + k]];
+    const GrainLine &two = in.grains[in.second[begin + k]];
+    columns.ux[k] = two.x - one.x;
+    columns.uy[k] = two.y - one.y;
+    columns.theta[k] = two.rotation - one.rotation;
+    columns.c1[k] = one.half_cos;
+    columns.s1[k] = one.half_sin;
+    columns.c2[k] = two.half_cos;
+    columns.s2[k] = two.half_sin;
+    // Two cache lines a joint, scalar by scalar: g++ would shuffle them into vectors,
+    // which takes twice as long.
+    asm volatile("");
+  }
+}
+
 template <bool weighted, bool prestressed>
 std::size_t intact_law(const IntactKernelInput &in,
                        const std::size_t begin,
                        const std::size_t n,
                        std::int32_t *over)
 {
-  // Gather: two cache lines a joint into columns.
-  alignas(64) double ux[N], uy[N], theta[N], c1[N], s1[N], c2[N], s2[N];
-  for (std::size_t k = 0; k < n; ++k)
-  {
-    const GrainLine &one = in.grains[in.first[begin + k]];
-    const GrainLine &two = in.grains[in.second[begin + k]];
-    ux[k] = two.x - one.x;
-    uy[k] = two.y - one.y;
-    theta[k] = two.rotation - one.rotation;
-    c1[k] = one.half_cos;
-    s1[k] = one.half_sin;
-    c2[k] = two.half_cos;
-    s2[k] = two.half_sin;
-  }
+  Columns columns;
+  gather(in, begin, n, columns);
+  const double *const ux = columns.ux, *const uy = columns.uy;
+  const double *const theta = columns.theta, *const c1 = columns.c1;
+  const double *const s1 = columns.s1, *const c2 = columns.c2, *const s2 = columns.s2;
 
   const double *const normal_x = in.normal_x + begin, *const normal_y =
                                                           in.normal_y + begin;
@@ -100,7 +119,8 @@ std::size_t intact_law(const IntactKernelInput &in,
   const double *const half_length = in.half_length + begin;
   const double shear_ratio = in.shear_ratio, moment_factor = in.moment_factor;
   const double outer = in.outer_centroid, tan_friction = in.tan_friction;
-  alignas(64) double fx[N], fy[N], t1[N], t2[N], worst[N], shear_stress[N];
+  alignas(64) double fx[N], fy[N], t1[N], t2[N], worst[N], coulomb[N];
+  const double tensile_strength = in.tensile_strength, cohesion = in.cohesion;
   for (std::size_t k = 0; k < n; ++k)
   {
     // Half angles add: the mean frame is turned by (theta1 + theta2)/2, the faces stand
@@ -129,7 +149,9 @@ std::size_t intact_law(const IntactKernelInput &in,
     const double bending = stiffness[k] * elastic_rotation;
     worst[k] =
         normal_stress + (bending < 0. ? -bending : bending) * half_length[k] * outer;
-    shear_stress[k] = stiffness[k] * shear_ratio * elastic_shear;
+    const double shear_stress = stiffness[k] * shear_ratio * elastic_shear;
+    coulomb[k] =
+        (shear_stress < 0. ? -shear_stress : shear_stress) + worst[k] * tan_friction;
     if (weighted)
       area_stiffness *= in.weight[begin + k];
     const double F = area_stiffness * elastic_gap;
@@ -148,13 +170,14 @@ std::size_t intact_law(const IntactKernelInput &in,
     in.force[begin + k] = {fx[k], fy[k], t1[k], t2[k]};
 
   // Tension first, then Coulomb: the outer element in tension is the first for both.
-  std::size_t n_over = 0;
+  long any = 0;
   for (std::size_t k = 0; k < n; ++k)
-  {
-    const double shear = shear_stress[k] < 0. ? -shear_stress[k] : shear_stress[k];
-    if (worst[k] >= in.tensile_strength || shear + worst[k] * tan_friction > in.cohesion)
+    any |= static_cast<long>(worst[k] >= tensile_strength) |
+           static_cast<long>(coulomb[k] > cohesion);
+  std::size_t n_over = 0;
+  for (std::size_t k = 0; any != 0 && k < n; ++k)
+    if (worst[k] >= tensile_strength || coulomb[k] > cohesion)
       over[n_over++] = static_cast<std::int32_t>(begin + k);
-  }
   return n_over;
 }
 

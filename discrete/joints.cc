@@ -54,10 +54,10 @@ void Joints::finish(const std::size_t n_grains)
   grain_joint.resize(2 * size());
   std::vector<std::int32_t> next(grain_begin.begin(), grain_begin.end() - 1);
   for (std::size_t j = 0; j < size(); ++j)
-  {
-    grain_joint[next[first[j]]++] = static_cast<std::int32_t>(2 * j);
-    grain_joint[next[second[j]]++] = static_cast<std::int32_t>(2 * j + 1);
-  }
+    grain_joint[next[first[j]]++] = static_cast<std::int32_t>(j);
+  grain_second = next;
+  for (std::size_t j = 0; j < size(); ++j)
+    grain_joint[next[second[j]]++] = static_cast<std::int32_t>(j);
 }
 
 const JointGroup &Joints::group_of(const std::size_t joint) const

@@ -96,9 +96,11 @@ struct Joints
   // Result of a step.
   std::vector<JointForce> force;
 
-  // Sum order: joints of grain i are grain_joint[grain_begin[i]] .. ascending; the entry
-  // is 2 * joint + (0: grain is first, 1: grain is second).
+  // Sum order: the joints of grain i are grain_joint[grain_begin[i]] up to
+  // grain_begin[i + 1]; those whose second grain it is begin at grain_second[i]. Both
+  // parts ascend.
   std::vector<std::int32_t> grain_begin;
+  std::vector<std::int32_t> grain_second;
   std::vector<std::int32_t> grain_joint;
 
   std::size_t size() const { return first.size(); }
