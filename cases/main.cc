@@ -1,7 +1,8 @@
 #include "cases/command_line.h"
 #include "cases/interrupt.h"
 #include "cases/output_directory.h"
-#include "discrete/errors.h"
+#include "continuum/errors.h"
+#include "discrete/packing_error.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -92,13 +93,15 @@ void print(const InputError &error)
 
 /// Threads wait for each other at every step, many times. By default they spin for a
 /// tenth of a second, which is ten times slower as soon as another program wants a core;
-/// asleep at once they lose little on free cores. libgomp reads this when a program is
-/// loaded, so the program starts itself anew, unless the user has chosen.
+/// asleep at once they take half of the speed on free cores. A few milliseconds outlast
+/// the serial parts of a step and lose little where cores are shared. libgomp reads this
+/// when a program is loaded, so the program starts itself anew, unless the user has
+/// chosen.
 void wait_politely(char **argv)
 {
   if (getenv("OMP_WAIT_POLICY") != nullptr || getenv("GOMP_SPINCOUNT") != nullptr)
     return;
-  setenv("GOMP_SPINCOUNT", "1000", 0);
+  setenv("GOMP_SPINCOUNT", "50000", 0);
   execv("/proc/self/exe", argv); // comes back only when it fails: then as it was
 }
 } // namespace
@@ -119,6 +122,12 @@ int main(int argc, char **argv)
     return 1;
   }
   catch (const antiform::NumericalError &error) // raised on all ranks together
+  {
+    if (rank == 0)
+      std::cerr << "antiform: " << error.what() << std::endl;
+    return 2;
+  }
+  catch (const antiform::discrete::PackingError &error) // likewise
   {
     if (rank == 0)
       std::cerr << "antiform: " << error.what() << std::endl;

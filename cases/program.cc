@@ -7,8 +7,9 @@
 #include "cases/scene.h"
 #include "cases/static_run.h"
 #include "cases/summary.h"
+#include "continuum/errors.h"
 #include "coupling/state_file.h"
-#include "discrete/errors.h"
+#include "discrete/packing_error.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -92,10 +93,13 @@ public:
   }
 
   /// Summary of a run that the physics has stopped; the last checkpoint stays.
-  void fail(const std::string &reason)
+  /// \return exit status
+  int fail(const std::string &reason)
   {
+    log_.line("stopped: " + reason);
     failure_ = reason;
     finish("failed");
+    return 2;
   }
 
 private:
@@ -357,9 +361,11 @@ int run(const Parameters &parameters,
   }
   catch (const NumericalError &error)
   {
-    log.line(std::string("stopped: ") + error.what());
-    stepped.fail(error.what());
-    return 2;
+    return stepped.fail(error.what());
+  }
+  catch (const discrete::PackingError &error)
+  {
+    return stepped.fail(error.what());
   }
 }
 } // namespace antiform::cases

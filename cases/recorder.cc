@@ -1,7 +1,7 @@
 #include "cases/recorder.h"
 
 #include "cases/field_output.h"
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <algorithm>
 #include <cmath>

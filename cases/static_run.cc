@@ -10,7 +10,7 @@
 #include "continuum/static_solver.h"
 #include "coupling/output/mesh_vtu.h"
 #include "coupling/output/tables.h"
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
 

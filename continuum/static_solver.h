@@ -1,7 +1,7 @@
 #pragma once
 
 #include "continuum/elastic_solid.h"
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>

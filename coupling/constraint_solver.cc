@@ -1,6 +1,6 @@
 #include "coupling/constraint_solver.h"
 
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <Eigen/SparseCholesky>
 

@@ -1,6 +1,6 @@
 #include "coupling/static_system.h"
 
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <Amesos.h>
 #include <Amesos_BaseSolver.h>

@@ -1,5 +1,5 @@
 #include "discrete/packing.h"
-#include "discrete/errors.h"
+#include "discrete/packing_error.h"
 #include "discrete/floaters.h"
 #include "discrete/packing_quality.h"
 #include "discrete/random.h"
@@ -149,8 +149,8 @@ void install_overlap(Relaxation &relaxation, const double target)
     previous = overlap;
     relaxation.scale(1. + change);
   }
-  throw NumericalError("Packing", "the wanted overlap is not found; give another seed",
-                       previous, target);
+  throw PackingError("the wanted overlap is not found; give another seed", previous,
+                     target);
 }
 
 /// Settle floaters, pass by pass, until there is none; @p rest brings the packing to rest
@@ -175,8 +175,7 @@ void remove_floaters(Relaxation &relaxation,
     relaxation.replace(std::move(disks));
     rest();
   }
-  throw NumericalError(
-      "Packing",
+  throw PackingError(
       "floaters keep appearing; give another seed or a larger "
       "installation gap",
       static_cast<double>(
@@ -254,10 +253,9 @@ jammed(const Vessel &vessel, const std::size_t n, const PackingParameters &p)
         !ease_overlaps(relaxation))
       return relaxation.disks();
   }
-  throw NumericalError("Packing",
-                       "no state of rest without floaters and large overlaps is found; "
-                       "give another seed",
-                       relaxation.state().unbalanced_ratio, final_tolerance);
+  throw PackingError("no state of rest without floaters and large overlaps is found; "
+                     "give another seed",
+                     relaxation.state().unbalanced_ratio, final_tolerance);
 }
 
 /// Pack with the number of disks that gives the mean diameter asked for.
@@ -343,10 +341,9 @@ Packing pack_polygon(const std::vector<Vec2> &polygon,
   for (const Disk &d : packing.disks)
     if (!contains(outline, d.centre) ||
         edges.depth(d.centre) < 0.99 * std::min(d.radius, 1.))
-      throw NumericalError("Packing",
-                           "a grain does not fit between the edges of its region; give "
-                           "smaller grains",
-                           edges.depth(d.centre), d.radius);
+      throw PackingError("a grain does not fit between the edges of its region; give "
+                         "smaller grains",
+                         edges.depth(d.centre), d.radius);
   packing.quality = finish(packing.disks, vessel, parameters);
   for (Disk &d : packing.disks)
     d.centre += origin;

@@ -1,5 +1,5 @@
 #include "discrete/relaxation.h"
-#include "discrete/errors.h"
+#include "discrete/packing_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -195,7 +195,7 @@ ContactState Relaxation::relax(const double tolerance, const double parted)
     drift(dt);
   }
   const double ratio = state().unbalanced_ratio;
-  throw NumericalError("Packing", "the disks do not come to rest; give another seed",
-                       ratio, tolerance);
+  throw PackingError("the disks do not come to rest; give another seed", ratio,
+                     tolerance);
 }
 } // namespace antiform::discrete

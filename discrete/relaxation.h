@@ -39,7 +39,7 @@ public:
   void scale(double factor);
   /// Move the disks until the unbalanced ratio is at most @p tolerance, or the mean
   /// overlap falls below @p parted: disks that are not jammed lose their contacts, and
-  /// ever slower. Throws NumericalError when neither comes about.
+  /// ever slower. Throws PackingError when neither comes about.
   ContactState relax(double tolerance, double parted);
   /// Contacts of the disks as they are.
   ContactState state();

@@ -2,7 +2,7 @@
 // its independence of the number of threads.
 #include "support/coupling_fixtures.h"
 
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <Eigen/Dense>
 

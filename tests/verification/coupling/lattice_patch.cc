@@ -3,7 +3,7 @@
 // errors come from the joining.
 #include "support/coupling_fixtures.h"
 
-#include "discrete/errors.h"
+#include "continuum/errors.h"
 
 #include <Eigen/Dense>
 
