@@ -1,0 +1,105 @@
+#include "cases/inertia.h"
+
+#include "cases/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace antiform::cases
+{
+using discrete::StiffnessSums;
+
+StiffnessSums grain_stiffness(const Scene &scene, const bool weighted)
+{
+  const coupling::GrainState &state = scene.grains->state;
+  StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, weighted);
+  for (const discrete::Wall &wall : scene.walls)
+    for (const discrete::WallContact &contact : wall.contacts)
+      sums.translation[contact.grain] +=
+          contact.stiffness * (weighted ? contact.weight : 1.);
+  for (const discrete::Contact &contact : scene.contacts.contacts)
+  {
+    const discrete::LinearContact &law = scene.contacts.law(state.grains, contact);
+    const double normal = discrete::normal_stiffness(
+        law, state.grains.radius[contact.first], state.grains.radius[contact.second]);
+    const double shear = law.friction > 0. ? normal / law.stiffness_ratio : 0.;
+    for (const std::int32_t i : {contact.first, contact.second})
+    {
+      sums.translation[i] += normal + shear;
+      sums.rotation[i] += shear * state.grains.radius[i] * state.grains.radius[i];
+    }
+  }
+  return sums;
+}
+
+namespace
+{
+/// Step of the softest region at its real masses: nothing there need be made heavier.
+double softest_step(const Scene &scene, const StiffnessSums &sums)
+{
+  const discrete::Grains &grains = scene.grains->state.grains;
+  std::vector<double> least(scene.grains->modulus.size(),
+                            std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    least[grains.region[i]] =
+        std::min(least[grains.region[i]], grains.mass[i] / sums.translation[i]);
+  return std::sqrt(*std::max_element(least.begin(), least.end()));
+}
+} // namespace
+
+double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
+{
+  const Parameters &p = scene.parameters;
+  const bool scaled = p.run.driver == "quasi-static";
+  double step = std::numeric_limits<double>::infinity();
+  if (scene.grains)
+  {
+    discrete::Grains &grains = scene.grains->state.grains;
+    const StiffnessSums sums = grain_stiffness(scene, false);
+    scene.dt0 = scaled ? softest_step(scene, sums) : 0.;
+    discrete::scale_density(grains, sums.translation, sums.rotation, scene.mass_weight,
+                            scene.dt0);
+    std::vector<double> extra(grains.size(), 0.);
+    for (const discrete::Wall &wall : scene.walls)
+      for (const discrete::WallContact &contact : wall.contacts)
+        extra[contact.grain] += contact.stiffness * contact.weight;
+    step = discrete::stable_step(grains, scene.grains->state.joints, extra);
+  }
+  if (scene.mesh)
+  {
+    const continuum::Vector &real =
+        scene.bridging ? scene.bridging->mesh_mass() : scene.solid->lumped_mass();
+    // The mesh is made as slow as the grains are, no slower.
+    scene.mesh->scale_density(real, foundation_rows, scaled && scene.grains ? step : 0.);
+    double largest = 0.;
+    const continuum::Vector sums = scene.solid->absolute_row_sums();
+    for (std::size_t i = 0; i < scene.mesh->mass.locally_owned_size(); ++i)
+      largest = std::max(largest, (sums.begin()[i] +
+                                   (foundation_rows.empty() ? 0. : foundation_rows[i])) *
+                                      scene.mesh->inverse_mass.begin()[i]);
+    largest = dealii::Utilities::MPI::max(largest,
+                                          scene.solid->dof_handler().get_communicator());
+    step = std::min(step, 2. / std::sqrt(largest));
+  }
+  return p.run.safety * step;
+}
+
+double layer_transit(const Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  const double modulus =
+      p.layer.young_modulus / (1. - p.layer.poisson_ratio * p.layer.poisson_ratio);
+  double density = 0.84 * p.layer.grain_density;
+  if (scene.grains)
+  {
+    const discrete::Grains &grains = scene.grains->state.grains;
+    double mass = 0.;
+    for (std::size_t i = 0; i < grains.size(); ++i)
+      if (grains.region[i] == layer_region)
+        mass += 1. / grains.inverse_mass[i];
+    density = mass / (scene.geometry.length() * scene.geometry.thickness());
+  }
+  return scene.geometry.length() / std::sqrt(modulus / density);
+}
+} // namespace antiform::cases

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "discrete/joints.h"
+
+#include <vector>
+
+namespace antiform::cases
+{
+struct Scene;
+
+/// Sums of contact stiffness on each grain, walls and contacts included; @p weighted with
+/// the bridging weights (stable step) or without (density scaling).
+discrete::StiffnessSums grain_stiffness(const Scene &scene, bool weighted);
+
+/// Set the inertial masses of grains and mesh, scaled where the driver is quasi-static.
+/// \param foundation_rows absolute row sums of the foundation [N/m], or empty
+/// \return the step that they allow, the deck's safety factor included [s]
+double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
+
+/// Time of an axial wave along the layer with its inertial masses [s].
+double layer_transit(const Scene &scene);
+} // namespace antiform::cases

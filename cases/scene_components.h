@@ -1,0 +1,18 @@
+#pragma once
+
+#include "coupling/mesh_components.h"
+
+#include <memory>
+
+namespace antiform::cases
+{
+struct Scene;
+
+/// Bonds, contacts and supports of the grains.
+void add_grain_components(Scene &scene);
+/// Gravity and surface pressure, and the prestress under which they are in equilibrium.
+void add_loads(Scene &scene);
+void add_foundation(Scene &scene, std::unique_ptr<coupling::MeshFoundation> foundation);
+/// Damping, motion, walls and constraint: what both sides share.
+void add_common_components(Scene &scene);
+} // namespace antiform::cases
