@@ -228,6 +228,20 @@ void declare(WallsParameters &walls, Declarations &entries)
   entries.leave();
 }
 
+void declare(DampingParameters &damping, Declarations &entries)
+{
+  entries.enter("Damping");
+  entries.choice("Form", damping.form,
+                 "Non-viscous, -alpha |r| sgn(v) with the unbalanced force r (local), or "
+                 "alpha/2 |r| (sgn(dr/dt) - sgn(v)) (combined). A drift faster than the "
+                 "vibration on it turns local damping into dry friction, which holds back "
+                 "the bending of a slender layer; combined damping acts on the vibration.",
+                 "combined|local");
+  entries.number("Coefficient", damping.coefficient, "alpha [-].",
+                 Number::above(0.).below(1.));
+  entries.leave();
+}
+
 void declare(RunParameters &run, Declarations &entries)
 {
   entries.enter("Run");
@@ -342,11 +356,7 @@ void declare_parameters(Parameters &p,
     else if (section == "Walls")
       declare(p.walls, entries);
     else if (section == "Damping")
-      declare_one(
-          section, "Coefficient", p.damping.coefficient,
-          "alpha of local damping: share of the unbalanced force that opposes the "
-          "velocity [-].",
-          Number::above(0.).below(1.), entries);
+      declare(p.damping, entries);
     else if (section == "Run")
       declare(p.run, entries);
     else

@@ -107,7 +107,8 @@ struct WallsParameters
 
 struct DampingParameters
 {
-  double coefficient = 0.7; ///< alpha of local damping
+  std::string form = "combined"; ///< or local
+  double coefficient = 0.7;      ///< alpha
 };
 
 /// Driver and when the run ends.

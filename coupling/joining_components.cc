@@ -46,60 +46,81 @@ void ConstrainedForces::measure()
   ratio_ = carried > 0. ? free / carried : 0.;
 }
 
-LocalDamping::LocalDamping(GrainState *grains, MeshState *mesh, const double coefficient)
+LocalDamping::LocalDamping(GrainState *grains,
+                           MeshState *mesh,
+                           const double coefficient,
+                           const bool combined)
     : grains_(grains)
     , mesh_(mesh)
     , coefficient_(coefficient)
 {
   grain_damping_.coefficient = coefficient;
+  grain_damping_.combined = combined;
   if (grains != nullptr)
-    for (std::vector<double> *v : {&grain_damping_.force_x, &grain_damping_.force_y,
-                                   &grain_damping_.torque, &grain_damping_.energy})
-      v->assign(grains->grains.size(), 0.);
+    grain_damping_.start(grains->grains.size());
   if (mesh != nullptr)
   {
     mesh_force_.assign(mesh->mass.locally_owned_size(), 0.);
-    mesh_energy_ = mesh_force_;
+    mesh_before_.assign(combined ? mesh_force_.size() : 0, 0.);
   }
 }
 
-void LocalDamping::run(const Stage stage, const Clock &clock)
+void LocalDamping::run(const Stage, const Clock &clock)
 {
-  if (stage == Stage::damp)
-  {
-    if (grains_ != nullptr)
-      compute_damping(grains_->grains, grains_->grains.force_x, grains_->grains.force_y,
-                      grains_->grains.torque, clock.dt, grain_damping_);
-    if (mesh_ != nullptr)
-      for (std::size_t i = 0; i < mesh_force_.size(); ++i)
-      {
-        const double v = mesh_->velocity.begin()[i];
-        const bool free = mesh_->inverse_mass.begin()[i] > 0.;
-        const double size = coefficient_ * std::abs(mesh_->force.begin()[i]);
-        mesh_force_[i] = v == 0. || !free ? 0. : -std::copysign(size, v);
-        mesh_energy_[i] -= 0.5 * clock.dt * mesh_force_[i] * v;
-      }
-    return;
-  }
   if (grains_ != nullptr)
-    book_damping(grains_->grains, clock.dt, grain_damping_);
+    compute_damping(grains_->grains, grains_->grains.force_x, grains_->grains.force_y,
+                    grains_->grains.torque, clock.dt, grain_damping_);
   if (mesh_ != nullptr)
-    for (std::size_t i = 0; i < mesh_force_.size(); ++i)
-      mesh_energy_[i] -= 0.5 * clock.dt * mesh_force_[i] * mesh_->velocity.begin()[i];
+    damp_mesh(clock.dt);
+}
+
+void LocalDamping::damp_mesh(const double dt)
+{
+  const auto n = static_cast<std::int64_t>(mesh_force_.size());
+  const double *const velocity = mesh_->velocity.begin();
+  const double *const inverse_mass = mesh_->inverse_mass.begin();
+  const double *const force = mesh_->force.begin();
+  double *const damping = mesh_force_.data();
+  double *const before = mesh_before_.data();
+  const bool combined = !mesh_before_.empty();
+  double power = 0.; // of the last step's forces and these
+#pragma omp simd reduction(+ : power)
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    const double v = velocity[i];
+    const double size = coefficient_ * std::abs(force[i]);
+    double d = v == 0. ? 0. : v > 0. ? -size : size;
+    if (combined)
+    {
+      d = combined_damping(coefficient_, force[i], before[i], v);
+      before[i] = force[i];
+    }
+    d = inverse_mass[i] == 0. ? 0. : d;
+    power += (damping[i] + d) * v;
+    damping[i] = d;
+  }
+  mesh_energy_ -= 0.5 * dt * power;
 }
 
 void LocalDamping::add_energies(Energies &energies) const
 {
   for (const double e : grain_damping_.energy)
     energies.damping += e;
-  for (const double e : mesh_energy_)
-    energies.damping += e;
+  energies.damping += mesh_energy_;
 }
 
 void LocalDamping::visit_state(StateArchive &archive)
 {
   archive.array("damping/grain_energy", grain_damping_.energy);
-  archive.array("damping/mesh_energy", mesh_energy_);
+  archive.array("damping/grain_force_x", grain_damping_.force_x);
+  archive.array("damping/grain_force_y", grain_damping_.force_y);
+  archive.array("damping/grain_torque", grain_damping_.torque);
+  archive.array("damping/grain_before_x", grain_damping_.before_x);
+  archive.array("damping/grain_before_y", grain_damping_.before_y);
+  archive.array("damping/grain_before_torque", grain_damping_.before_torque);
+  archive.array("damping/mesh_force", mesh_force_);
+  archive.array("damping/mesh_before", mesh_before_);
+  archive.value("damping/mesh_energy", mesh_energy_);
 }
 
 Walls::Walls(std::vector<Wall> &walls,

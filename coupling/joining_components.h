@@ -65,11 +65,14 @@ private:
   double ratio_ = 0.;
 };
 
-/// Local damping of grains and mesh, on the constrained forces.
+/// Local or combined damping of grains and mesh (GrainDamping), on the constrained forces.
 class LocalDamping : public Component
 {
 public:
-  LocalDamping(GrainState *grains, MeshState *mesh, double coefficient);
+  LocalDamping(GrainState *grains,
+               MeshState *mesh,
+               double coefficient,
+               bool combined = false);
   void run(Stage stage, const Clock &clock) override;
   void add_energies(Energies &energies) const override;
   void visit_state(StateArchive &archive) override;
@@ -78,11 +81,14 @@ public:
   const std::vector<double> *mesh_forces() const { return &mesh_force_; }
 
 private:
+  void damp_mesh(double dt);
+
   GrainState *grains_;
   MeshState *mesh_;
   double coefficient_;
   discrete::GrainDamping grain_damping_;
-  std::vector<double> mesh_force_, mesh_energy_;
+  std::vector<double> mesh_force_, mesh_before_;
+  double mesh_energy_ = 0.; ///< removed so far [J]
 };
 
 /// Rigid frictionless walls at the ends of the section: contact of the grains, prescribed

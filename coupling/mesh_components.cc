@@ -54,8 +54,11 @@ void MeshMotion::run(const Stage stage, const Clock &clock)
     kick(clock);
   else if (stage == Stage::drift)
   {
+    const double dt = clock.dt, *const v = s.velocity.begin();
+    double *const u = s.displacement.begin();
+#pragma omp simd
     for (std::int64_t i = 0; i < n; ++i)
-      s.displacement.begin()[i] += clock.dt * s.velocity.begin()[i];
+      u[i] += dt * v[i];
     s.displacement.update_ghost_values();
   }
 }
@@ -66,10 +69,13 @@ void MeshMotion::kick(const Clock &clock)
   const auto n = static_cast<std::int64_t>(s.mass.locally_owned_size());
   if (clock.sample_due)
     before_.assign(s.velocity.begin(), s.velocity.begin() + n);
+  const double dt = clock.dt, *const m = s.inverse_mass.begin(),
+               *const f = s.force.begin();
   const double *const extra = damping != nullptr ? damping->data() : nullptr;
+  double *const v = s.velocity.begin();
+#pragma omp simd
   for (std::int64_t i = 0; i < n; ++i)
-    s.velocity.begin()[i] += clock.dt * s.inverse_mass.begin()[i] *
-                             (s.force.begin()[i] + (extra != nullptr ? extra[i] : 0.));
+    v[i] += dt * m[i] * (f[i] + (extra != nullptr ? extra[i] : 0.));
   for (PrescribedDof &entry : s.prescribed)
   {
     entry.before = s.velocity.begin()[entry.dof];

@@ -20,6 +20,47 @@ inline double opposing(const double alpha, const double force, const double velo
 
 // Bare pointers: they stay in registers, and the loops turn into vector code.
 
+void GrainDamping::start(const std::size_t n_grains)
+{
+  for (std::vector<double> *v : {&force_x, &force_y, &torque})
+    v->assign(n_grains, 0.);
+  for (std::vector<double> *v : {&before_x, &before_y, &before_torque})
+    v->assign(combined ? n_grains : 0, 0.);
+  energy.assign((n_grains + damping_block - 1) / damping_block, 0.);
+}
+
+namespace
+{
+/// One component of the damping on grains begin .. end - 1.
+/// \return power of the last step's forces and these
+template <bool combined>
+double damp(const std::int64_t begin,
+            const std::int64_t end,
+            const double alpha,
+            const double *const r,
+            double *const r_before,
+            const double *const v,
+            double *const force)
+{
+  double power = 0.;
+#pragma omp simd reduction(+ : power)
+  for (std::int64_t i = begin; i < end; ++i)
+  {
+    double f;
+    if (combined)
+    {
+      f = combined_damping(alpha, r[i], r_before[i], v[i]);
+      r_before[i] = r[i];
+    }
+    else
+      f = opposing(alpha, r[i], v[i]);
+    power += (force[i] + f) * v[i];
+    force[i] = f;
+  }
+  return power;
+}
+} // namespace
+
 void compute_damping(const Grains &grains,
                      const std::vector<double> &rx,
                      const std::vector<double> &ry,
@@ -27,41 +68,26 @@ void compute_damping(const Grains &grains,
                      const double dt,
                      GrainDamping &damping)
 {
-  for (std::vector<double> *v :
-       {&damping.force_x, &damping.force_y, &damping.torque, &damping.energy})
-    if (v->size() != grains.size())
-      v->resize(grains.size(), 0.);
+  if (damping.force_x.size() != grains.size())
+    damping.start(grains.size());
   const auto n = static_cast<std::int64_t>(grains.size());
+  constexpr auto block = static_cast<std::int64_t>(damping_block);
+  const std::int64_t n_blocks = (n + block - 1) / block;
+  const auto component = damping.combined ? damp<true> : damp<false>;
   const double alpha = damping.coefficient;
-  const double *const vx = grains.velocity_x.data(), *const vy = grains.velocity_y.data();
-  const double *const spin = grains.spin.data();
-  const double *const r_x = rx.data(), *const r_y = ry.data(), *const r_t = torque.data();
-  double *const fx = damping.force_x.data(), *const fy = damping.force_y.data();
-  double *const moment = damping.torque.data(), *const energy = damping.energy.data();
-#pragma omp parallel for simd schedule(static) if (n >= threads_from_grains)
-  for (std::int64_t i = 0; i < n; ++i)
+#pragma omp parallel for schedule(static) if (n >= threads_from_grains)
+  for (std::int64_t b = 0; b < n_blocks; ++b)
   {
-    const double x = opposing(alpha, r_x[i], vx[i]);
-    const double y = opposing(alpha, r_y[i], vy[i]);
-    const double t = opposing(alpha, r_t[i], spin[i]);
-    fx[i] = x;
-    fy[i] = y;
-    moment[i] = t;
-    energy[i] -= 0.5 * dt * (x * vx[i] + y * vy[i] + t * spin[i]);
+    const std::int64_t begin = b * block, end = std::min(begin + block, n);
+    const double power =
+        component(begin, end, alpha, rx.data(), damping.before_x.data(),
+                  grains.velocity_x.data(), damping.force_x.data()) +
+        component(begin, end, alpha, ry.data(), damping.before_y.data(),
+                  grains.velocity_y.data(), damping.force_y.data()) +
+        component(begin, end, alpha, torque.data(), damping.before_torque.data(),
+                  grains.spin.data(), damping.torque.data());
+    damping.energy[b] -= 0.5 * dt * power;
   }
-}
-
-void book_damping(const Grains &grains, const double dt, GrainDamping &damping)
-{
-  const auto n = static_cast<std::int64_t>(grains.size());
-  const double *const vx = grains.velocity_x.data(), *const vy = grains.velocity_y.data();
-  const double *const spin = grains.spin.data();
-  const double *const fx = damping.force_x.data(), *const fy = damping.force_y.data();
-  const double *const moment = damping.torque.data();
-  double *const energy = damping.energy.data();
-#pragma omp parallel for simd schedule(static) if (n >= threads_from_grains)
-  for (std::int64_t i = 0; i < n; ++i)
-    energy[i] -= 0.5 * dt * (fx[i] * vx[i] + fy[i] * vy[i] + moment[i] * spin[i]);
 }
 
 namespace

@@ -6,26 +6,52 @@
 
 namespace antiform::discrete
 {
-/// Local (non-viscous) damping of the grains (Cundall): on each degree of freedom the
-/// damping force -alpha |r| sgn(v), r being the force that accelerates it. On a grain
-/// that carries a multiplier r is the constrained force, not the sum of its contacts.
+/// Non-viscous damping (Cundall) of each degree of freedom, r being the force that
+/// accelerates it: on a grain that carries a multiplier the constrained force, not the
+/// sum of its contacts.
+///   local:    -alpha |r| sgn(v)
+///   combined: alpha/2 |r| (sgn(dr/dt) - sgn(v))
+/// The two are the same for a body that vibrates about a place of rest. Where it also
+/// drifts faster than it vibrates, sgn(v) no longer changes: local damping leaves the
+/// vibration alone and is a dry friction of alpha times its mean |r| on the drift, which
+/// holds back the bending of a slender layer. Combined damping damps it all the same.
 struct GrainDamping
 {
   double coefficient = 0.;                      ///< alpha in [0, 1)
-  std::vector<double> force_x, force_y, torque; ///< of this step [N], [N m]
-  std::vector<double> energy;                   ///< removed so far, per grain [J]
+  bool combined = false;
+  std::vector<double> force_x, force_y, torque; ///< of the last step [N], [N m]
+  std::vector<double> before_x, before_y, before_torque; ///< r of the last step; combined
+  std::vector<double> energy; ///< removed so far, per block of grains [J]
+
+  /// All zero for @p n_grains grains.
+  void start(std::size_t n_grains);
 };
+/// Grains whose damping energy is summed up as one.
+constexpr std::size_t damping_block = 512;
+
+/// Combined damping of one degree of freedom; written for the vectoriser.
+inline double combined_damping(const double alpha,
+                               const double force,
+                               const double force_before,
+                               const double velocity)
+{
+  const double half = force < 0. ? -0.5 * alpha * force : 0.5 * alpha * force;
+  const double change = force - force_before;
+  const double rising = change > 0. ? half : -half;
+  const double opposing = velocity > 0. ? -half : half;
+  return (change == 0. ? 0. : rising) + (velocity == 0. ? 0. : opposing);
+}
 
 /// Damping forces of this step from the accelerating forces @p rx, @p ry [N], @p torque
-/// [N m] and the velocities; books the first half of their work.
+/// [N m] and the velocities. Books the work of half a step before and half a step after
+/// the present velocities: that of the last step's forces and of these. The energy is
+/// then that removed up to the time of the positions. @p dt is that of every step.
 void compute_damping(const Grains &grains,
                      const std::vector<double> &rx,
                      const std::vector<double> &ry,
                      const std::vector<double> &torque,
                      double dt,
                      GrainDamping &damping);
-/// Second half of the work, with the velocities after kick and constraint.
-void book_damping(const Grains &grains, double dt, GrainDamping &damping);
 
 /// v += dt (force + damping) / m, likewise spins. @p damping may be null.
 void kick(Grains &grains, double dt, const GrainDamping *damping);
@@ -44,7 +70,8 @@ GrainVelocities velocities(const Grains &grains);
 double kinetic_energy(const Grains &grains, const GrainVelocities &before);
 
 /// Inertial masses for quasi-static work: m* = w max(m, k dt0^2) with the unweighted
-/// stiffness sums k, and J* = w max(J, 3/2 k_rot dt0^2). @p weight: mass weights mu (empty: 1).
+/// stiffness sums k, and J* = w max(J, 3/2 k_rot dt0^2). @p weight: mass weights mu
+/// (empty: 1).
 void scale_density(Grains &grains,
                    const std::vector<double> &translation_stiffness,
                    const std::vector<double> &rotation_stiffness,

@@ -330,7 +330,7 @@ public:
     if (options.damping > 0.)
     {
       auto &damping = add(std::make_unique<LocalDamping>(&grains, &mesh, options.damping),
-                          {Stage::damp, Stage::drift}, 96, "damping");
+                          {Stage::damp}, 96, "damping");
       grain_motion.damping = damping.grain_forces();
       mesh_motion.damping = damping.mesh_forces();
     }

@@ -223,8 +223,6 @@ struct ExplicitRun
     if (damped)
       compute_damping(grains, grains.force_x, grains.force_y, grains.torque, dt, damping);
     kick(grains, dt, damped ? &damping : nullptr);
-    if (damped)
-      book_damping(grains, dt, damping);
   }
 
   void second_half(const double dt)

@@ -176,7 +176,7 @@ TEST(Parameters, ReadsOnlyTheSectionsOfListedComponents)
   EXPECT_EQ(effective.find("subsection Matrix"), std::string::npos);
   EXPECT_NE(effective.find("subsection Layer"), std::string::npos);
   EXPECT_TRUE(tells(problems_of(deck, {"Components=layer, walls, damping"}),
-                    {deck + ":6:", "Damping/Nonsense", "Entries here: Coefficient"}));
+                    {deck + ":6:", "Damping/Nonsense", "Entries here: Form, Coefficient"}));
 }
 
 TEST(Parameters, TheLastSetWinsAndTheCommandLineIsLast)

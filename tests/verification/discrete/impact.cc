@@ -173,30 +173,36 @@ TEST(DashpotImpact, BooksWhatItDissipates)
 
 namespace
 {
-/// A grain on a bond to a held grain, pulled out along the bond and let go, with local
-/// damping: successive extremes and the time between them.
+/// A grain on a bond to another, pulled out along the bond and let go, damped: successive
+/// extremes of their distance and the time between them. The other grain is held, or both
+/// drift along at a speed that no vibration turns.
 struct Decrement
 {
   double ratio = 0., half_period = 0.;
 };
-Decrement decrement(const double alpha)
+Decrement decrement(const double alpha, const bool combined = false, const bool drift = false)
 {
   Sample pair = bonded_pair(strong_law());
-  hold(pair.grains, 0);
   pair.grains.displacement_x[1] = 1e-4;
-  const double omega = std::sqrt(k_n / pair.grains.mass[1]);
+  const double omega = std::sqrt((drift ? 2. : 1.) * k_n / pair.grains.mass[1]);
   const double dt = 2. * M_PI / omega / 20000.;
+  if (drift)
+    pair.grains.velocity_x = {20. * 1e-4 * omega, 20. * 1e-4 * omega};
+  else
+    hold(pair.grains, 0);
   ExplicitRun run(pair);
   run.damping.coefficient = alpha;
+  run.damping.combined = combined;
+  const Grains &grains = run.sample.grains;
   std::vector<double> extreme{1e-4}, when{0.};
   double last = 0.;
   while (extreme.size() < 4)
   {
     run.advance(dt);
-    const double v = run.sample.grains.velocity_x[1];
+    const double v = grains.velocity_x[1] - grains.velocity_x[0];
     if (last * v < 0.) // turned between the last two half steps
     {
-      extreme.push_back(std::abs(run.sample.grains.displacement_x[1]));
+      extreme.push_back(std::abs(grains.displacement_x[1] - grains.displacement_x[0]));
       when.push_back(run.time - dt * (0.5 + v / (v - last)));
     }
     last = v;
@@ -224,6 +230,30 @@ TEST(LocalDamping, HalfPeriodIsThatOfTheClosedForm)
     const double exact =
         0.5 * M_PI / omega * (1. / std::sqrt(1. - alpha) + 1. / std::sqrt(1. + alpha));
     EXPECT_NEAR(decrement(alpha).half_period / exact, 1., 1e-3) << alpha; // as above
+  }
+}
+
+// sgn(v) is that of the drift: the two grains' damping forces are equal and the distance
+// between them does not feel them. Hence combined damping.
+TEST(LocalDamping, LeavesAVibrationOnADriftAlone)
+{
+  EXPECT_NEAR(decrement(0.7, false, true).ratio, 1., 1e-3);
+}
+
+TEST(CombinedDamping, IsLocalDampingAboutAPlaceOfRest)
+{
+  EXPECT_NEAR(decrement(0.1, true).ratio, 0.9045, 1e-3 * 0.9045); // as above
+  EXPECT_NEAR(decrement(0.7, true).ratio, 0.42008, 1e-3 * 0.42008);
+}
+
+TEST(CombinedDamping, DampsAVibrationOnADriftByHalfTheCoefficient)
+{
+  // Of the two grains one is damped, the one whose force falls: -alpha |r| of 2 |r| that
+  // change the distance.
+  for (const double alpha : {0.1, 0.7})
+  {
+    const double exact = std::sqrt((1. - 0.5 * alpha) / (1. + 0.5 * alpha));
+    EXPECT_NEAR(decrement(alpha, true, true).ratio / exact, 1., 1e-3) << alpha;
   }
 }
 
