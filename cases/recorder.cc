@@ -26,6 +26,7 @@ const std::vector<std::string> history_columns{"step",
                                                "limb_dip_deg",
                                                "unbalanced_ratio",
                                                "displacement_gap_m",
+                                               "surface_uplift_m",
                                                "boundary_work_J",
                                                "kinetic_J",
                                                "strain_grains_J",
@@ -56,6 +57,48 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
       crack_table_.emplace(directory_ + "/cracks.csv");
     strain_origin_ = 0.;
   }
+  find_surface();
+}
+
+double Recorder::window() const
+{
+  const SectionGeometry &g = scene_.geometry;
+  return std::max(1.5 * g.diameter(), g.wavelength() / 40.);
+}
+
+void Recorder::find_surface()
+{
+  const SectionGeometry &g = scene_.geometry;
+  if (scene_.mesh)
+  {
+    const auto partitioner = scene_.mesh->displacement.get_partitioner();
+    for (const auto dof : scene_.solid->locally_owned())
+    {
+      const dealii::Point<2> x = scene_.solid->support_point(dof);
+      if (scene_.solid->component(dof) == 1 && std::abs(x[0]) <= window() &&
+          x[1] >= g.surface() - 1e-9 * g.thickness())
+        surface_.push_back(partitioner->global_to_local(dof));
+    }
+    return;
+  }
+  for (const auto &[grain, width] : surface_grains(*scene_.grains, g))
+    if (std::abs(scene_.grains->state.grains.reference_x[grain]) <= window())
+      surface_.push_back(static_cast<std::uint32_t>(grain));
+}
+
+double Recorder::surface_uplift() const
+{
+  double sum = 0., n = static_cast<double>(surface_.size());
+  for (const std::uint32_t i : surface_)
+    sum += scene_.mesh ? scene_.mesh->displacement.begin()[i]
+                       : scene_.grains->state.grains.displacement_y[i];
+  if (scene_.mesh)
+  {
+    const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
+    sum = dealii::Utilities::MPI::sum(sum, comm);
+    n = dealii::Utilities::MPI::sum(n, comm);
+  }
+  return n > 0. ? sum / n : 0.;
 }
 
 double Recorder::mean_uplift(const double x_reference, const double half_width) const
@@ -112,7 +155,7 @@ Recorder::Sample Recorder::measure() const
     sample.matrix_share = sample.wall_force != 0. ? matrix / sample.wall_force : 0.;
   }
   // Crest over the two troughs, each a window of one cell of a fortieth of the wave.
-  const double half_width = std::max(1.5 * g.diameter(), g.wavelength() / 40.);
+  const double half_width = window();
   const double trough = std::min(0.5 * g.wavelength(), 0.5 * g.length() - half_width);
   const double crest_uplift = mean_uplift(0., half_width);
   const double trough_uplift =
@@ -128,6 +171,7 @@ Recorder::Sample Recorder::measure() const
     steepest = std::max(steepest, std::atan(rise / (outer - inner)));
   }
   sample.limb_dip = steepest * 180. / M_PI;
+  sample.surface_uplift = surface_uplift();
   return sample;
 }
 
@@ -183,12 +227,26 @@ void Recorder::append_history(const Clock &clock, const Sample &sample)
                          ? scene_.bridging->displacement_gap(scene_.grains->state.grains,
                                                              scene_.mesh->displacement)
                          : 0.;
-  history_->append(std::vector<double>{
-      static_cast<double>(clock.step), clock.time, sample.shortening, sample.axial_stress,
-      sample.wall_force, sample.matrix_share, static_cast<double>(n_tensile_),
-      static_cast<double>(n_shear_), sample.fold_amplitude, sample.limb_dip, ratio_, gap,
-      energies_.boundary_work, energies_.kinetic, energies_.strain_grains,
-      energies_.strain_continuum, energies_.slip, energies_.damping, energies_.fracture});
+  history_->append(std::vector<double>{static_cast<double>(clock.step),
+                                       clock.time,
+                                       sample.shortening,
+                                       sample.axial_stress,
+                                       sample.wall_force,
+                                       sample.matrix_share,
+                                       static_cast<double>(n_tensile_),
+                                       static_cast<double>(n_shear_),
+                                       sample.fold_amplitude,
+                                       sample.limb_dip,
+                                       ratio_,
+                                       gap,
+                                       sample.surface_uplift,
+                                       energies_.boundary_work,
+                                       energies_.kinetic,
+                                       energies_.strain_grains,
+                                       energies_.strain_continuum,
+                                       energies_.slip,
+                                       energies_.damping,
+                                       energies_.fracture});
 }
 
 void Recorder::append_cracks()
@@ -306,6 +364,7 @@ void Recorder::fill(Summary &summary) const
   results["matrix_share_at_peak"] = {peak_share_, "-"};
   results["fold_amplitude"] = {last_.fold_amplitude, "m"};
   results["limb_dip"] = {last_.limb_dip, "deg"};
+  results["surface_uplift"] = {last_.surface_uplift, "m"};
   results["unbalanced_ratio"] = {ratio_, "-"};
   if (scene_.grains)
   {
@@ -391,7 +450,8 @@ void Recorder::visit_state(coupling::StateArchive &archive)
                                       &last_.wall_force,
                                       &last_.matrix_share,
                                       &last_.fold_amplitude,
-                                      &last_.limb_dip};
+                                      &last_.limb_dip,
+                                      &last_.surface_uplift};
   std::vector<double> values;
   for (const double *member : members)
     values.push_back(*member);

@@ -46,10 +46,13 @@ private:
   struct Sample
   {
     double shortening = 0., axial_stress = 0., wall_force = 0., matrix_share = 0.;
-    double fold_amplitude = 0., limb_dip = 0.;
+    double fold_amplitude = 0., limb_dip = 0., surface_uplift = 0.;
   };
   Sample measure() const;
   double mean_uplift(double x_reference, double half_width) const;
+  double window() const; ///< half width over which a place is averaged [m]
+  void find_surface();
+  double surface_uplift() const;
   void append_history(const coupling::Clock &clock, const Sample &sample);
   void append_cracks();
   void close_ledger(const coupling::Energies &energies);
@@ -62,6 +65,8 @@ private:
   std::string directory_;
   std::int64_t sample_interval_ = 1;
   bool acted_ = false;
+  /// Top of the section above the crest: mesh dofs, or grains where there is no mesh.
+  std::vector<std::uint32_t> surface_;
   std::optional<coupling::Table> history_;
   std::optional<coupling::CrackTable> crack_table_;
 
