@@ -159,6 +159,7 @@ private:
       checkpoint();
     coupling::Simulation &simulation = *scene_->simulation;
     const std::int64_t first_step = simulation.clock().step;
+    const double first_share = recorder_->share_done();
     Timer::time_point last_checkpoint = Timer::now();
     const Timer::time_point stepping = Timer::now();
     while (!recorder_->finished())
@@ -186,8 +187,8 @@ private:
       {
         const double elapsed = seconds_since(stepping), share = recorder_->share_done();
         log_.progress(share, simulation.clock().step,
-                      share > start_share_ && elapsed > 0.
-                          ? elapsed * (1. - share) / (share - start_share_)
+                      share > first_share && elapsed > 0.
+                          ? elapsed * (1. - share) / (share - first_share)
                           : -1.,
                       scene_->grains ? scene_->grains->state.cracks.size() : 0,
                       static_cast<double>(simulation.clock().step - first_step) /
@@ -283,7 +284,6 @@ private:
   std::unique_ptr<Scene> scene_;
   Recorder *recorder_ = nullptr;
   Past past_;
-  double start_share_ = 0.;
   std::string failure_;
 };
 
