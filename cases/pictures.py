@@ -448,10 +448,10 @@ def main():
     parser.add_argument("run", metavar="RUN_DIR", help="directory of a run")
     parser.add_argument("--step", default="last", help="last (default), first, peak, all "
                         "or a number")
-    parser.add_argument("--out", metavar="DIR", help="where to (default: RUN_DIR)")
+    parser.add_argument("--out", metavar="DIR", help="where to (default: RUN_DIR/pictures)")
     options = parser.parse_args()
     try:
-        draw_all(Run(options.run), options.step, options.out or options.run)
+        draw_all(Run(options.run), options.step, options.out or os.path.join(options.run, "pictures"))
     except (RunError, OSError) as error:
         sys.exit(f"pictures.py: {error}")
 

@@ -111,10 +111,10 @@ assert abs(frame.time / results['shortening']['value'] - 1) < 1e-3
 
 TEST_F(OutputOfARun, MakesPictures)
 {
-  const std::string out = folder_->path("pictures");
-  const Outcome outcome = run_command(
-      "MPLCONFIGDIR=" + folder_->path("matplotlib") + " " + python +
-      ANTIFORM_SOURCE_DIR "/cases/pictures.py " + directory() + " --out " + out);
+  const std::string out = directory() + "/pictures"; // where they go unless told otherwise
+  const Outcome outcome =
+      run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") + " " + python +
+                  ANTIFORM_SOURCE_DIR "/cases/pictures.py " + directory());
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   for (const char *name :
        {"fracture_map", "force_chains", "displacement", "stress", "curves"})
