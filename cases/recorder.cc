@@ -35,10 +35,8 @@ const std::vector<std::string> history_columns{"step",
                                                "damping_J",
                                                "fracture_J"};
 
-// Small strain and rotation: beyond these the mesh's linear theory is off by several per
-// cent; twice as far the run stops.
-constexpr double rotation_limit = 5. * M_PI / 180.;
-constexpr double strain_limit = 0.1;
+// A peak counts when the curve has stayed below it over so much shortening.
+constexpr double settled = 2e-4;
 } // namespace
 
 Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
@@ -144,10 +142,11 @@ Recorder::Sample Recorder::measure() const
   sample.shortening = scene_.shortening();
   if (scene_.wall_motion != nullptr)
   {
-    double layer = 0., matrix = scene_.wall_motion->mesh_reaction();
+    double layer = scene_.wall_motion->mesh_reaction(true);
+    double matrix = scene_.wall_motion->mesh_reaction() - layer;
     if (scene_.grains)
     {
-      layer = scene_.wall_motion->grain_reaction(layer_region);
+      layer += scene_.wall_motion->grain_reaction(layer_region);
       matrix += scene_.wall_motion->grain_reaction(matrix_region);
     }
     sample.wall_force = layer + matrix;
@@ -201,11 +200,10 @@ void Recorder::run(const Stage, const Clock &clock)
     peak_stress_ = sample.axial_stress;
     peak_strain_ = sample.shortening;
     peak_share_ = sample.matrix_share;
-    peak_sample_ = static_cast<std::int64_t>(strain_.size());
   }
   last_ = sample;
   if (scene_.mesh)
-    watch_mesh(clock);
+    mesh_watch_.look(*scene_.solid, scene_.mesh->displacement, clock.step);
   if (sample.shortening >= next_field_)
   {
     write_fields();
@@ -267,34 +265,6 @@ void Recorder::append_cracks()
   }
 }
 
-void Recorder::watch_mesh(const Clock &clock)
-{
-  for (const auto &cell : scene_.solid->cell_states(scene_.mesh->displacement))
-  {
-    if (cell.weight < 0.2)
-      continue; // where the mesh has little weight its strain says nothing
-    largest_rotation_ = std::max(largest_rotation_, std::abs(cell.rotation));
-    const double half_difference = 0.5 * (cell.strain[0] - cell.strain[1]);
-    const double radius = std::hypot(half_difference, 0.5 * cell.strain[2]);
-    const double mean = 0.5 * (cell.strain[0] + cell.strain[1]);
-    largest_strain_ = std::max(largest_strain_, std::abs(mean) + radius);
-  }
-  const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
-  largest_rotation_ = dealii::Utilities::MPI::max(largest_rotation_, comm);
-  largest_strain_ = dealii::Utilities::MPI::max(largest_strain_, comm);
-  if (largest_rotation_ > 2. * rotation_limit)
-    throw NumericalError(
-        "mesh",
-        "the mesh has turned by more than 10 degrees, beyond small-strain "
-        "theory: end the run earlier (Run / End shortening); rotation [rad]",
-        largest_rotation_, 2. * rotation_limit, clock.step);
-  if (largest_strain_ > 2. * strain_limit)
-    throw NumericalError("mesh",
-                         "the mesh is strained by more than 20 %, beyond small-strain "
-                         "theory: end the run earlier (Run / End shortening); strain",
-                         largest_strain_, 2. * strain_limit, clock.step);
-}
-
 void Recorder::look_for_end(const Sample &sample)
 {
   const RunParameters &run = scene_.parameters.run;
@@ -304,13 +274,13 @@ void Recorder::look_for_end(const Sample &sample)
       why_finished_ = "the shortening asked for";
     return;
   }
-  // A peak counts when a fair stretch of the curve has stayed below it.
-  const auto n = static_cast<std::int64_t>(strain_.size());
-  if (n - peak_sample_ >= 40 &&
-      sample.shortening >= run.strain_multiple_of_peak * peak_strain_)
+  const double below = sample.shortening - peak_strain_;
+  const bool peaked = peak_strain_ > 0. && below >= settled;
+  if (peaked && sample.shortening >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
   else if (sample.shortening >= run.longest_shortening)
-    why_finished_ = "the longest shortening, without a peak";
+    why_finished_ =
+        std::string("the longest shortening") + (peaked ? "" : ", without a peak");
 }
 
 double Recorder::share_done() const
@@ -318,8 +288,7 @@ double Recorder::share_done() const
   const RunParameters &run = scene_.parameters.run;
   if (run.end_shortening > 0.)
     return last_.shortening / run.end_shortening;
-  const auto n = static_cast<std::int64_t>(strain_.size());
-  if (n - peak_sample_ >= 10 && peak_strain_ > 0.)
+  if (peak_strain_ > 0. && last_.shortening - peak_strain_ >= 0.25 * settled)
     return std::min(1., last_.shortening / (run.strain_multiple_of_peak * peak_strain_));
   return last_.shortening / run.longest_shortening;
 }
@@ -400,14 +369,8 @@ void Recorder::fill(Summary &summary) const
       {"damping", energies_.damping},
       {"fracture", energies_.fracture},
       {"closure_error", largest_terms_ > 0. ? largest_gap_ / largest_terms_ : 0.}};
-  if (largest_rotation_ > rotation_limit)
-    summary.warnings.push_back("the mesh turned by up to " +
-                               std::to_string(largest_rotation_ * 180. / M_PI) +
-                               " degrees; small-strain theory holds to about 5");
-  if (largest_strain_ > strain_limit)
-    summary.warnings.push_back("the mesh was strained by up to " +
-                               std::to_string(100. * largest_strain_) +
-                               " %; small-strain theory holds to about 10");
+  for (const std::string &warning : mesh_watch_.warnings())
+    summary.warnings.push_back(warning);
 }
 
 void Recorder::visit_state(coupling::StateArchive &archive)
@@ -416,16 +379,15 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   archive.array("recorder/stress", stress_);
   archive.array("recorder/total", total_);
   archive.array("recorder/field_shortening", field_shortening_);
-  std::vector<std::int64_t> integers{peak_sample_, n_tensile_, n_shear_, 0, 0};
+  std::vector<std::int64_t> integers{n_tensile_, n_shear_, 0, 0};
   if (!archive.is_loading())
   {
-    integers[3] = history_->offset();
-    integers[4] = crack_table_ ? crack_table_->offset() : 0;
+    integers[2] = history_->offset();
+    integers[3] = crack_table_ ? crack_table_->offset() : 0;
   }
   archive.array("recorder/integers", integers);
-  peak_sample_ = integers[0];
-  n_tensile_ = integers[1];
-  n_shear_ = integers[2];
+  n_tensile_ = integers[0];
+  n_shear_ = integers[1];
   const std::vector<double *> members{&peak_stress_,
                                       &peak_strain_,
                                       &peak_share_,
@@ -435,8 +397,8 @@ void Recorder::visit_state(coupling::StateArchive &archive)
                                       &strain_origin_,
                                       &largest_gap_,
                                       &largest_terms_,
-                                      &largest_rotation_,
-                                      &largest_strain_,
+                                      &mesh_watch_.largest_rotation,
+                                      &mesh_watch_.largest_strain,
                                       &ratio_,
                                       &energies_.boundary_work,
                                       &energies_.kinetic,
@@ -464,10 +426,10 @@ void Recorder::visit_state(coupling::StateArchive &archive)
     *members[k] = values[k];
   look_for_end(last_); // a completed run has nothing left to do
   history_.emplace(
-      coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[3]));
+      coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[2]));
   if (scene_.grains)
   {
-    crack_table_.emplace(directory_ + "/cracks.csv", integers[4]);
+    crack_table_.emplace(directory_ + "/cracks.csv", integers[3]);
     scene_.grains->state.cracks_recorded =
         static_cast<std::size_t>(n_tensile_ + n_shear_);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cases/scene.h"
+#include "cases/small_strain.h"
 #include "cases/summary.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
@@ -56,7 +57,6 @@ private:
   void append_history(const coupling::Clock &clock, const Sample &sample);
   void append_cracks();
   void close_ledger(const coupling::Energies &energies);
-  void watch_mesh(const coupling::Clock &clock);
   void look_for_end(const Sample &sample);
   void write_grain_fields(const std::string &number, double shortening);
   double section_stiffness() const;
@@ -75,12 +75,12 @@ private:
       total_; ///< samples: shortening, axial stress, force
   double peak_stress_ = 0., peak_strain_ = 0., peak_share_ = 0.;
   double first_crack_strain_ = 0., first_crack_stress_ = 0.;
-  std::int64_t peak_sample_ = 0, n_tensile_ = 0, n_shear_ = 0;
+  std::int64_t n_tensile_ = 0, n_shear_ = 0;
   double next_field_ = 0.;
   std::vector<double> field_shortening_;
   double strain_origin_ = 0.;
-  double largest_gap_ = 0., largest_terms_ = 0.;       ///< of the ledger [J]
-  double largest_rotation_ = 0., largest_strain_ = 0.; ///< of the mesh
+  double largest_gap_ = 0., largest_terms_ = 0.; ///< of the ledger [J]
+  SmallStrainWatch mesh_watch_;
   double ratio_ = 0.;
   coupling::Energies energies_;
   Sample last_;

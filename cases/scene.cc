@@ -126,11 +126,19 @@ void support_mesh(Scene &scene)
     const dealii::Point<2> x = scene.solid->support_point(dof);
     const auto local = partitioner->global_to_local(dof);
     const bool horizontal = scene.solid->component(dof) == 0;
+    // A node on the interface reacts for half a cell of each side, by their stiffness.
+    const double depth = std::min(g.layer_top(x[0]) - x[1], x[1] - g.layer_bottom(x[0]));
+    const double contrast = p.matrix.stiffness_contrast;
+    double layer_share = depth < -small ? 0. : 1.;
+    if (p.layer.representation == "grains")
+      layer_share = 0.;
+    else if (p.has("matrix") && std::abs(depth) <= small)
+      layer_share = contrast / (1. + contrast);
     if (p.has("walls") && horizontal && x[0] < g.x_min() + small)
-      scene.mesh->prescribe(local, 0);
+      scene.mesh->prescribe(local, 0, layer_share);
     else if (p.has("walls") && horizontal && x[0] > g.x_max() - small)
-      scene.mesh->prescribe(local, 1);
-    else if (!p.has("foundation") && x[1] < g.base() + small &&
+      scene.mesh->prescribe(local, 1, layer_share);
+    else if (p.has("matrix") && !p.has("foundation") && x[1] < g.base() + small &&
              (!horizontal || p.matrix.base == "fixed"))
       scene.mesh->prescribe(local, -1);
   }

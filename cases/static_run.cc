@@ -1,16 +1,18 @@
 #include "cases/static_run.h"
 
+#include "cases/interrupt.h"
 #include "cases/prestress.h"
-#include "cases/recorder.h"
 #include "cases/scene.h"
+#include "cases/small_strain.h"
 #include "cases/summary.h"
+#include "continuum/errors.h"
 #include "continuum/foundation.h"
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
 #include "continuum/static_solver.h"
 #include "coupling/output/mesh_vtu.h"
 #include "coupling/output/tables.h"
-#include "continuum/errors.h"
+#include "coupling/output/vtu.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -32,13 +34,23 @@ continuum::DirichletValues supports(const Scene &scene,
 {
   const Parameters &p = scene.parameters;
   const double move = 0.5 * shortening * scene.geometry.length();
+  const SectionGeometry &g = scene.geometry;
   const auto constant = [](const double value)
   { return [value](const dealii::Point<2> &) { return value; }; };
   continuum::DirichletValues values;
-  if (!p.has("foundation"))
+  if (!p.has("matrix")) // a bare layer is free to fold: one corner keeps it in place
+  {
+    const double small = 1e-9 * g.length();
+    for (const auto dof : solid.locally_owned())
+      if (const dealii::Point<2> x = solid.support_point(dof);
+          solid.component(dof) == 1 && x[0] < g.x_min() + small &&
+          x[1] < g.layer_bottom(g.x_min()) + small)
+        values[dof] = 0.;
+  }
+  else if (!p.has("foundation"))
   {
     continuum::prescribe(solid, continuum::boundary::bottom, 1, constant(0.), values);
-    if (p.has("matrix") && p.matrix.base == "fixed")
+    if (p.matrix.base == "fixed")
       continuum::prescribe(solid, continuum::boundary::bottom, 0, constant(0.), values);
   }
   continuum::prescribe(solid, continuum::boundary::left, 0, constant(move), values);
@@ -80,18 +92,34 @@ int run_static(const Parameters &p,
     history.emplace(options.output + "/history.csv",
                     std::vector<std::string>{"step", "shortening", "wall_force_N",
                                              "strain_continuum_J"});
-  const double end =
-      p.run.end_shortening > 0. ? p.run.end_shortening : p.run.longest_shortening;
+  // Without walls the sides are held, and one solve gives the answer to the loads.
+  const double end = p.has("walls") ? p.run.end_shortening : 0.;
+  const int n_steps = p.has("walls") ? p.run.load_steps : 1;
   const continuum::StaticSolver::Options solver_options;
   continuum::StaticSolver solver(solid, solid.stiffness(), supports(*scene, solid, 0.),
                                  solver_options);
   continuum::Vector &u = scene->mesh->displacement;
   unsigned int iterations = 0;
-  double force = 0., energy = 0.;
+  double force = 0., energy = 0., reached = 0.;
   std::vector<coupling::PvdEntry> fields;
-  for (int step = 1; step <= p.run.load_steps; ++step)
+  SmallStrainWatch watch;
+  std::string status = "completed", failure;
+  int step = 0;
+  while (step < n_steps)
   {
-    const double shortening = end * step / p.run.load_steps;
+    const double elapsed =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const int stop = interrupt_signal() != 0 ||
+                             (options.time_limit > 0. && elapsed > options.time_limit)
+                         ? 1
+                         : 0;
+    if (dealii::Utilities::MPI::max(stop, communicator) != 0)
+    {
+      status = "interrupted";
+      break;
+    }
+    ++step;
+    const double shortening = end * step / n_steps;
     const continuum::DirichletValues values = supports(*scene, solid, shortening);
     solver.set_values(values);
     iterations += solver.solve(load, u);
@@ -115,12 +143,26 @@ int run_static(const Parameters &p,
     fields.push_back({shortening, "continuum", file});
     if (first)
       coupling::write_pvd(options.output + "/fields.pvd", fields);
+    reached = shortening;
+    try
+    {
+      watch.look(solid, u, step);
+    }
+    catch (const NumericalError &error) // raised on all ranks together
+    {
+      status = "failed";
+      failure = error.what();
+      break;
+    }
   }
 
   Summary summary;
   summary.title = p.title;
   summary.version = ANTIFORM_VERSION;
-  summary.status = "completed";
+  summary.status = status;
+  summary.warnings = watch.warnings();
+  if (!failure.empty())
+    summary.warnings.push_back(failure);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   rusage usage{};
@@ -136,21 +178,24 @@ int run_static(const Parameters &p,
       {"cells", static_cast<std::int64_t>(scene->triangulation->n_global_active_cells())},
       {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
       {"multipliers", 0}};
-  summary.steps = summary.solves = p.run.load_steps;
+  summary.steps = summary.solves = step;
   const double height = scene->geometry.surface() - scene->geometry.base();
-  summary.results = {{"shortening", {end, "-"}},
+  summary.results = {{"shortening", {reached, "-"}},
                      {"wall_force", {force, "N"}},
-                     {"section_stiffness", {force / end / height, "Pa"}},
                      {"solver_iterations", {static_cast<double>(iterations), "-"}}};
+  if (reached > 0.)
+    summary.results["section_stiffness"] = {force / reached / height, "Pa"};
   summary.energy = {{"strain_continuum", energy}};
   for (const Effect &effect : list_effects(p))
-    summary.effects[effect.name] = {
-        effect.state == Effect::State::present && effect.name != "damping", effect.reason,
-        effect.name == "mesh" ? p.run.load_steps : 0, 0.};
+    summary.effects[effect.name] = {effect.state == Effect::State::present &&
+                                        effect.name != "damping",
+                                    effect.reason, effect.name == "mesh" ? step : 0, 0.};
   if (first)
     write_summary(options.output + "/summary.json", summary);
-  log.line("completed: " + std::to_string(p.run.load_steps) + " solves, wall force " +
+  for (const std::string &warning : summary.warnings)
+    log.line("warning: " + warning);
+  log.line(status + ": " + std::to_string(step) + " solves, wall force " +
            coupling::shortest_text(force) + " N");
-  return 0;
+  return status == "completed" ? 0 : status == "failed" ? 2 : 3;
 }
 } // namespace antiform::cases

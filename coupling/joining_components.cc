@@ -192,13 +192,14 @@ double Walls::grain_reaction(const int region) const
   return sum / static_cast<double>(walls_.size());
 }
 
-double Walls::mesh_reaction() const
+double Walls::mesh_reaction(const bool of_layer) const
 {
   double sum = 0.;
   if (mesh_ != nullptr)
     for (const PrescribedDof &entry : mesh_->prescribed)
       if (entry.wall >= 0)
-        sum += entry.reaction * walls_[entry.wall].normal.x;
+        sum += (of_layer ? entry.layer_share : 1.) * entry.reaction *
+               walls_[entry.wall].normal.x;
   return sum / static_cast<double>(walls_.size());
 }
 

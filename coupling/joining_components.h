@@ -65,7 +65,8 @@ private:
   double ratio_ = 0.;
 };
 
-/// Local or combined damping of grains and mesh (GrainDamping), on the constrained forces.
+/// Local or combined damping of grains and mesh (GrainDamping), on the constrained
+/// forces.
 class LocalDamping : public Component
 {
 public:
@@ -109,7 +110,8 @@ public:
   /// Mean over the walls of the force that presses on grains of @p region, and on the
   /// mesh [N].
   double grain_reaction(int region) const;
-  double mesh_reaction() const;
+  /// \return that of the whole mesh, or of the layer's part of it
+  double mesh_reaction(bool of_layer = false) const;
   /// Shortening of the section so far: inward displacement of all walls [m].
   double closure() const;
 

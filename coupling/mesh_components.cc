@@ -17,11 +17,14 @@ MeshState::MeshState(continuum::ElasticSolid &body)
   inverse_mass.update_ghost_values();
 }
 
-void MeshState::prescribe(const std::uint32_t dof, const int wall)
+void MeshState::prescribe(const std::uint32_t dof,
+                          const int wall,
+                          const double layer_share)
 {
   PrescribedDof entry;
   entry.dof = dof;
   entry.wall = wall;
+  entry.layer_share = layer_share;
   prescribed.push_back(entry);
   inverse_mass.begin()[dof] = 0.;
 }

@@ -11,10 +11,11 @@ namespace antiform::coupling
 /// A mesh dof whose motion is given: by a wall (its velocity along x), or at rest.
 struct PrescribedDof
 {
-  std::uint32_t dof = 0; ///< local index
-  int wall = -1;         ///< index into the walls; -1: held
-  double before = 0.;    ///< velocity before the kick [m/s]
-  double reaction = 0.;  ///< force of the support on the mesh, of the last step [N]
+  std::uint32_t dof = 0;   ///< local index
+  int wall = -1;           ///< index into the walls; -1: held
+  double layer_share = 0.; ///< of the reaction, that the competent layer takes
+  double before = 0.;      ///< velocity before the kick [m/s]
+  double reaction = 0.;    ///< force of the support on the mesh, of the last step [N]
 };
 
 /// The mesh as the loop moves it.
@@ -28,7 +29,7 @@ struct MeshState
 
   explicit MeshState(continuum::ElasticSolid &body);
   /// Prescribe a dof; its inverse mass becomes zero.
-  void prescribe(std::uint32_t dof, int wall);
+  void prescribe(std::uint32_t dof, int wall, double layer_share = 0.);
   /// Inertial masses for quasi-static work: M* = max(M, dt0^2/4 sum_K |K_JK|).
   /// @p real_mass the weighted real mass; @p extra further row sums (foundation) or
   /// empty.

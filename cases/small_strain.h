@@ -1,0 +1,24 @@
+#pragma once
+
+#include "continuum/elastic_solid.h"
+
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// The mesh's linear theory holds for small strains and rotations: beyond 5 degrees or
+/// 10 % it is off by several per cent, which a run says; at twice that it stops.
+class SmallStrainWatch
+{
+public:
+  /// Look at a displacement. Throws NumericalError at twice a limit, on all ranks.
+  void look(const continuum::ElasticSolid &solid,
+            const continuum::Vector &displacement,
+            long step);
+  std::vector<std::string> warnings() const;
+
+  double largest_rotation = 0.; ///< so far [rad]
+  double largest_strain = 0.;   ///< principal [-]
+};
+} // namespace antiform::cases

@@ -1,0 +1,78 @@
+// Scenes without grains: what they report, where they stop, what they refuse.
+#include "support/tiny_run.h"
+
+#include <cmath>
+
+using namespace antiform::test;
+
+namespace
+{
+std::string run_into(const std::string &directory,
+                     const std::vector<std::string> &entries,
+                     const int status = 0)
+{
+  const Outcome outcome =
+      run_program("run " + tiny_deck() + " -o " + directory +
+                  set({"Layer/Representation=continuum"}) + set(entries));
+  EXPECT_EQ(outcome.status, status) << outcome.output;
+  return outcome.output;
+}
+} // namespace
+
+TEST(ContinuumRun, WithoutWallsIsNotShortened)
+{
+  const TemporaryFolder folder;
+  run_into(folder.path("run"),
+           {"Run/Driver=static", "Components=layer, matrix, gravity"});
+  const CsvTable history(folder.path("run") + "/history.csv");
+  EXPECT_EQ(history.column("shortening"), std::vector<double>{0.});
+}
+
+TEST(ContinuumRun, GivesTheLayerItsShareOfTheWallForce)
+{
+  const TemporaryFolder folder;
+  run_into(folder.path("run"), {"Run/End shortening=1e-3"});
+  const CsvTable history(folder.path("run") + "/history.csv");
+  // A straight layer takes E' times the shortening. The axial waves of the drive are what
+  // is left, some per cent at this speed.
+  const double modulus = 56e9 / (1. - 0.2 * 0.2);
+  const double ratio = history.column("axial_stress_Pa").back() /
+                       (modulus * history.column("shortening").back());
+  EXPECT_NEAR(ratio, 1., 0.05);
+}
+
+TEST(ContinuumRun, StopsBeyondSmallStrainInTheStaticDriverToo)
+{
+  const TemporaryFolder folder;
+  run_into(folder.path("run"),
+           {"Run/Driver=static", "Run/End shortening=0.5", "Run/Longest shortening=0.6"},
+           2);
+  const nlohmann::json summary = summary_of(folder.path("run"));
+  EXPECT_EQ(summary.at("status"), "failed");
+  EXPECT_NE(summary.at("warnings").dump().find("20 %"), std::string::npos);
+}
+
+TEST(ContinuumRun, RefusesALayerThatSlides)
+{
+  const TemporaryFolder folder;
+  const std::string text = run_into(
+      folder.path("run"),
+      {"Run/Driver=static", "Run/End shortening=1e-3", "Matrix/Interface=frictionless"},
+      1);
+  EXPECT_NE(text.find("Matrix/Interface"), std::string::npos) << text;
+}
+
+TEST(GrainRun, EndsWhereItsSamplesDoNotMatter)
+{
+  const TemporaryFolder folder;
+  std::vector<double> ends;
+  for (const char *samples : {"50", "200"})
+  {
+    const std::string directory = folder.path(samples);
+    const Outcome outcome = run_tiny(
+        directory, set({std::string("Output/Samples per millistrain=") + samples}));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    ends.push_back(result(summary_of(directory), "shortening"));
+  }
+  EXPECT_NEAR(ends[0] / ends[1], 1., 0.02); // a sample is 1 % of it
+}
