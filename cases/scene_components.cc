@@ -66,7 +66,8 @@ void add_grain_components(Scene &scene)
     for (const auto &[grain, width] : base_grains(*scene.grains, scene.geometry))
       supports.push_back({grain, spring * width});
     const std::string name = p.has("foundation") ? "foundation" : "base";
-    simulation.add(std::make_unique<GrainBase>(state, supports), {Stage::forces},
+    const bool fixed = !p.has("foundation") && p.matrix.base == "fixed";
+    simulation.add(std::make_unique<GrainBase>(state, supports, fixed), {Stage::forces},
                    rank_base, name, reason(name));
   }
 }
@@ -141,10 +142,10 @@ void add_common_components(Scene &scene)
   const std::vector<double> *mesh_damping = nullptr;
   if (p.has("damping"))
   {
-    auto &damping = simulation.add(
-        std::make_unique<LocalDamping>(grains, mesh, p.damping.coefficient,
-                                       p.damping.form == "combined"),
-        {Stage::damp}, rank_damping, "damping", reason_for(p, "damping"));
+    auto &damping =
+        simulation.add(std::make_unique<LocalDamping>(grains, mesh, p.damping.coefficient,
+                                                      p.damping.form == "combined"),
+                       {Stage::damp}, rank_damping, "damping", reason_for(p, "damping"));
     grain_damping = damping.grain_forces();
     mesh_damping = damping.mesh_forces();
   }

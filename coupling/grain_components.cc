@@ -284,11 +284,15 @@ void GrainLoads::add_energies(Energies &energies) const
 void GrainBase::run(const Stage, const Clock &)
 {
   for (const Support &support : supports_)
+  {
+    if (fixed_)
+      state_.grains.force_x[support.grain] = 0.; // the support takes it
     if (std::isinf(support.stiffness))
-      state_.grains.force_y[support.grain] = 0.; // the support takes it
+      state_.grains.force_y[support.grain] = 0.;
     else
       state_.grains.force_y[support.grain] -=
           support.stiffness * state_.grains.displacement_y[support.grain];
+  }
 }
 
 void GrainBase::add_energies(Energies &energies) const

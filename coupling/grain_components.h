@@ -166,9 +166,11 @@ public:
     std::int32_t grain;
     double stiffness; ///< [N/m]; infinity: held
   };
-  GrainBase(GrainState &state, std::vector<Support> supports)
+  /// \param fixed held in x too
+  GrainBase(GrainState &state, std::vector<Support> supports, const bool fixed = false)
       : state_(state)
       , supports_(std::move(supports))
+      , fixed_(fixed)
   {
   }
   void run(Stage stage, const Clock &clock) override;
@@ -177,5 +179,6 @@ public:
 private:
   GrainState &state_;
   std::vector<Support> supports_;
+  bool fixed_;
 };
 } // namespace antiform::coupling
