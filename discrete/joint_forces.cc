@@ -39,7 +39,8 @@ IntactKernelInput kernel_input(Joints &joints,
   in.outer_centroid = 1. - 1. / n;
   constexpr double none = std::numeric_limits<double>::infinity();
   // An unbreakable group without strengths is not looked at.
-  const bool tested = look_at_strengths && (law.breakable || law.tensile_strength > 0.);
+  const bool tested = look_at_strengths &&
+                      (law.breakable || law.tensile_strength > 0. || law.cohesion > 0.);
   in.tensile_strength = tested ? law.tensile_strength : none;
   in.cohesion = tested ? law.cohesion : none;
   in.tan_friction = tested ? law.tan_friction : 0.;
