@@ -49,7 +49,8 @@ std::string prepare_output_directory(RunOptions &options)
     throw InputError({"output directory '" + options.output + "': cannot be created (" +
                       error.message() +
                       "). Give one that can be written to with -o DIR."});
-  for (const char *file : {"summary.json", "state.h5", "deck.prm"})
+  // deck.prm and a summary alone are of a run that failed before its first step.
+  for (const char *file : {"state.h5", "history.csv"})
     if (!options.resume && fs::exists(directory / file, error))
       throw InputError({"output directory '" + options.output + "': holds another run (" +
                         file +
@@ -59,6 +60,10 @@ std::string prepare_output_directory(RunOptions &options)
 
   if (options.resume && !fs::exists(directory / "state.h5", error))
   {
+    if (fs::exists(directory / "history.csv", error))
+      throw InputError({"output directory '" + options.output +
+                        "': holds results (history.csv), but no state.h5 to go on from. "
+                        "Give another directory with -o DIR, or remove this one."});
     options.resume = false;
     return "There is no state.h5 in '" + options.output + "': the run starts afresh.";
   }

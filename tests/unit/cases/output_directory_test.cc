@@ -48,7 +48,7 @@ TEST(OutputDirectory, AcceptsAnEmptyOrForeignDirectoryAndRefusesAnotherRun)
   EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), ""); // empty, made just now
   scratch.write("a/b/notes.txt", "mine");
   EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), "");
-  for (const std::string file : {"summary.json", "state.h5", "deck.prm"})
+  for (const std::string file : {"state.h5", "history.csv"})
   {
     scratch.write(file + ".d/" + file, "old");
     const std::string text = refusal_of(options_for(scratch.path(file + ".d")));
@@ -65,10 +65,20 @@ TEST(OutputDirectory, ResumesWhereThereIsAStateAndElseSaysThatItStartsAfresh)
   EXPECT_EQ(prepare_output_directory(with), "");
   EXPECT_TRUE(with.resume);
 
+  // What failed before its first step has left a deck and a summary.
+  scratch.write("without/deck.prm", "old");
   scratch.write("without/summary.json", "old");
   RunOptions without = options_for(scratch.path("without"), true);
   EXPECT_NE(prepare_output_directory(without).find("starts afresh"), std::string::npos);
   EXPECT_FALSE(without.resume);
+}
+
+TEST(OutputDirectory, KeepsResultsThatNoStateGoesWith)
+{
+  const Scratch scratch;
+  scratch.write("static/history.csv", "old");
+  RunOptions options = options_for(scratch.path("static"), true);
+  EXPECT_THROW(prepare_output_directory(options), InputError);
 }
 
 TEST(OutputDirectory, RefusesWhatCannotBeWrittenTo)
