@@ -77,6 +77,12 @@ void check_strengths(const std::string &section,
 void check_layer(const Parameters &p, Findings &findings)
 {
   const auto &joint = p.layer.joint;
+  if (p.layer.representation == "grains" && joint.breakable &&
+      joint.tensile_strength == 0. && joint.cohesion == 0.)
+    findings.push_back({{"Layer/Breakable", "Layer/Flat joint/Tensile strength",
+                         "Layer/Flat joint/Cohesion"},
+                        "but both strengths are 0 Pa: every joint would break in the "
+                        "first step. Give strengths."});
   if (p.layer.representation == "grains" && joint.breakable)
     check_strengths("Layer/Flat joint", joint.tensile_strength, joint.cohesion,
                     joint.tan_friction, findings);
@@ -106,6 +112,12 @@ void check_matrix(const Parameters &p, Findings &findings)
         {{"Matrix/Representation", "Layer/Representation"},
          "a layer of finite elements in a matrix of grains does not exist. "
          "Set 'Layer/Representation' = 'grains', or this to 'continuum'."});
+
+  if (p.layer.representation == "continuum" && m.interface != "cemented")
+    findings.push_back(
+        {{"Matrix/Interface", "Layer/Representation"},
+         "a layer of finite elements shares its nodes with the matrix. Give "
+         "cemented, or 'Layer/Representation' = 'grains'."});
 
   const bool has_grains = m.representation == "grains" || p.is_bridged();
   if (has_grains && m.poisson_ratio >= 0.25)

@@ -100,10 +100,10 @@ void declare(LayerParameters &layer, Declarations &entries)
                  Number::at_least(2.));
   entries.number("Radius ratio", layer.radius_ratio,
                  "Largest over smallest grain radius, uniform by number [-].",
-                 Number::between(1., 10.));
+                 Number::between(1., 3.));
   entries.number("Installation gap ratio", layer.installation_gap,
                  "Largest gap that is bonded, over the mean grain radius [-].",
-                 Number::between(0., 1.));
+                 Number::between(0.05, 1.));
   entries.number("Grain density", layer.grain_density,
                  "Of the solid; the rock's is less by the porosity [kg/m^3].",
                  Number::above(0.));
@@ -231,12 +231,13 @@ void declare(WallsParameters &walls, Declarations &entries)
 void declare(DampingParameters &damping, Declarations &entries)
 {
   entries.enter("Damping");
-  entries.choice("Form", damping.form,
-                 "Non-viscous, -alpha |r| sgn(v) with the unbalanced force r (local), or "
-                 "alpha/2 |r| (sgn(dr/dt) - sgn(v)) (combined). A drift faster than the "
-                 "vibration on it turns local damping into dry friction, which holds back "
-                 "the bending of a slender layer; combined damping acts on the vibration.",
-                 "combined|local");
+  entries.choice(
+      "Form", damping.form,
+      "Non-viscous, -alpha |r| sgn(v) with the unbalanced force r (local), or "
+      "alpha/2 |r| (sgn(dr/dt) - sgn(v)) (combined). A drift faster than the "
+      "vibration on it turns local damping into dry friction, which holds back "
+      "the bending of a slender layer; combined damping acts on the vibration.",
+      "combined|local");
   entries.number("Coefficient", damping.coefficient, "alpha [-].",
                  Number::above(0.).below(1.));
   entries.leave();

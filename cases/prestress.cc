@@ -256,7 +256,7 @@ Prestress prestress_of(const Scene &scene)
     prestress.unit_weight =
         p.gravity.acceleration * (scene.grains && scene.grains->matrix
                                       ? scene.grains->matrix->bulk_density
-                                      : 0.84 * p.layer.grain_density);
+                                      : 0.84 * p.matrix.grain_density);
   return prestress;
 }
 

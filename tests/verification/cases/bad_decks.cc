@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"bad.prm:2: ", "'Matirx'", "Did you mean 'Matrix'?"}},
         Refusal{"NegativeRadiusRatio",
                 {indented("Layer", "set Radius ratio = -1.66")},
-                {"bad.prm:3: ", "'Layer/Radius ratio' = '-1.66'", ">= 1 and <= 10"}},
+                {"bad.prm:3: ", "'Layer/Radius ratio' = '-1.66'", ">= 1 and <= 3"}},
         Refusal{"NoThickness",
                 {indented("Layer", "set Thickness = 0")},
                 {"bad.prm:3: ", "'Layer/Thickness' = '0'", "Give a number > 0 [m]"}},
