@@ -306,6 +306,7 @@ public:
   struct Options
   {
     double damping = 0.;
+    bool combined = false;   ///< form of the damping
     bool constrained = true; ///< damping and ratio from the constrained forces
     bool bridged = true;     ///< project velocities on the constraint
     std::function<double(double)> wall_speed; ///< with walls
@@ -329,7 +330,8 @@ public:
              {Stage::damp}, 95, "unbalanced force");
     if (options.damping > 0.)
     {
-      auto &damping = add(std::make_unique<LocalDamping>(&grains, &mesh, options.damping),
+      auto &damping = add(std::make_unique<LocalDamping>(&grains, &mesh, options.damping,
+                                                         options.combined),
                           {Stage::damp}, 96, "damping");
       grain_motion.damping = damping.grain_forces();
       mesh_motion.damping = damping.mesh_forces();

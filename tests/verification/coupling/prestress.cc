@@ -38,7 +38,7 @@ struct Pull
 
 /// Pull the end by a tenth of the prestress' shortening along half a cosine, hold it, and
 /// compare the reaction with the static one from the middle of the ramp on.
-Pull pull(const double alpha, const bool constrained)
+Pull pull(const double alpha, const bool constrained, const bool combined = false)
 {
   Column column;
   column.prestress(pressure);
@@ -58,6 +58,7 @@ Pull pull(const double alpha, const bool constrained)
   Loop::Options options;
   options.damping = alpha;
   options.constrained = constrained;
+  options.combined = combined;
   options.wall_speed = speed;
   const double dt = 0.8 * column.model.stable_step();
   Loop run(column.model, dt, options);
@@ -75,8 +76,9 @@ Pull pull(const double alpha, const bool constrained)
             });
   run.advance(static_cast<std::int64_t>((ramp + hold) / dt));
   result.ratio = run.unbalanced_ratio();
-  std::printf("  alpha = %g, %s forces: reaction error %.2e, last ratio %.1e\n", alpha,
-              constrained ? "constrained" : "unconstrained", result.error, result.ratio);
+  std::printf("  alpha = %g%s, %s forces: reaction error %.2e, last ratio %.1e\n", alpha,
+              combined ? " combined" : "", constrained ? "constrained" : "unconstrained",
+              result.error, result.ratio);
   return result;
 }
 } // namespace
@@ -94,6 +96,9 @@ TEST(PrestressedColumn, PulledSlowlyAnswersLikeTheStaticOne)
   const Pull damped = pull(0.7, true);
   EXPECT_LT(damped.error, 1e-3);
   EXPECT_LT(damped.ratio, 1e-6);
+  const Pull combined = pull(0.7, true, true);
+  EXPECT_LT(combined.error, 1e-3);
+  EXPECT_LT(combined.ratio, 1e-6);
 }
 
 TEST(PrestressedColumn, UnconstrainedForcesMisjudgeIt)
