@@ -19,6 +19,24 @@ TEST(Repeatability, ThreadsDoNotChangeABit)
   expect_same_run(folder.path("1"), folder.path("2"));
 }
 
+// Loops over fewer than 2000 grains stay on one thread: here is a scene beyond that, with
+// mesh and bridging domain.
+TEST(Repeatability, ThreadsDoNotChangeABitOfALargerScene)
+{
+  const TemporaryFolder folder;
+  for (const int n_threads : {1, 2})
+  {
+    const std::string directory = folder.path(std::to_string(n_threads));
+    const Outcome outcome =
+        run_program("run " ANTIFORM_SOURCE_DIR "/cases/burial-depth/quick.prm -o " +
+                        directory + set({"Run/End shortening=5e-5"}),
+                    1, n_threads);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+  }
+  ASSERT_GT(summary_of(folder.path("1")).at("sizes").at("grains"), 2000);
+  expect_same_run(folder.path("1"), folder.path("2"));
+}
+
 TEST(Repeatability, DeckPrmRepeatsTheRun)
 {
   const TemporaryFolder folder;
