@@ -10,14 +10,13 @@ namespace antiform::cases
 {
 using discrete::StiffnessSums;
 
-StiffnessSums grain_stiffness(const Scene &scene, const bool weighted)
+StiffnessSums grain_stiffness(const Scene &scene)
 {
   const coupling::GrainState &state = scene.grains->state;
-  StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, weighted);
+  StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, false);
   for (const discrete::Wall &wall : scene.walls)
     for (const discrete::WallContact &contact : wall.contacts)
-      sums.translation[contact.grain] +=
-          contact.stiffness * (weighted ? contact.weight : 1.);
+      sums.translation[contact.grain] += contact.stiffness;
   for (const discrete::Contact &contact : scene.contacts.contacts)
   {
     const discrete::LinearContact &law = scene.contacts.law(state.grains, contact);
@@ -56,7 +55,7 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
   if (scene.grains)
   {
     discrete::Grains &grains = scene.grains->state.grains;
-    const StiffnessSums sums = grain_stiffness(scene, false);
+    const StiffnessSums sums = grain_stiffness(scene);
     scene.dt0 = scaled ? softest_step(scene, sums) : 0.;
     discrete::scale_density(grains, sums.translation, sums.rotation, scene.mass_weight,
                             scene.dt0);

@@ -8,9 +8,9 @@ namespace antiform::cases
 {
 struct Scene;
 
-/// Sums of contact stiffness on each grain, walls and contacts included; @p weighted with
-/// the bridging weights (stable step) or without (density scaling).
-discrete::StiffnessSums grain_stiffness(const Scene &scene, bool weighted);
+/// Sums of contact stiffness on each grain, walls and contacts included, without the
+/// bridging weights: for density scaling.
+discrete::StiffnessSums grain_stiffness(const Scene &scene);
 
 /// Set the inertial masses of grains and mesh, scaled where the driver is quasi-static.
 /// \param foundation_rows absolute row sums of the foundation [N/m], or empty

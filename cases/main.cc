@@ -2,7 +2,6 @@
 #include "cases/interrupt.h"
 #include "cases/output_directory.h"
 #include "continuum/errors.h"
-#include "discrete/packing_error.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -122,12 +121,6 @@ int main(int argc, char **argv)
     return 1;
   }
   catch (const antiform::NumericalError &error) // raised on all ranks together
-  {
-    if (rank == 0)
-      std::cerr << "antiform: " << error.what() << std::endl;
-    return 2;
-  }
-  catch (const antiform::discrete::PackingError &error) // likewise
   {
     if (rank == 0)
       std::cerr << "antiform: " << error.what() << std::endl;

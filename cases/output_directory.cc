@@ -50,20 +50,19 @@ std::string prepare_output_directory(RunOptions &options)
                       error.message() +
                       "). Give one that can be written to with -o DIR."});
   // deck.prm and a summary alone are of a run that failed before its first step.
-  for (const char *file : {"state.h5", "history.csv"})
-    if (!options.resume && fs::exists(directory / file, error))
-      throw InputError({"output directory '" + options.output + "': holds another run (" +
-                        file +
-                        "). Continue that run with --resume, give another directory "
-                        "with -o DIR, or remove this one."});
+  const bool has_state = fs::exists(directory / "state.h5", error);
+  if (!has_state && fs::exists(directory / "history.csv", error))
+    throw InputError({"output directory '" + options.output +
+                      "': holds results (history.csv), but no state.h5 to go on from. "
+                      "Give another directory with -o DIR, or remove this one."});
+  if (has_state && !options.resume)
+    throw InputError({"output directory '" + options.output +
+                      "': holds another run (state.h5). Continue that run with --resume, "
+                      "give another directory with -o DIR, or remove this one."});
   prove_writable(directory);
 
-  if (options.resume && !fs::exists(directory / "state.h5", error))
+  if (options.resume && !has_state)
   {
-    if (fs::exists(directory / "history.csv", error))
-      throw InputError({"output directory '" + options.output +
-                        "': holds results (history.csv), but no state.h5 to go on from. "
-                        "Give another directory with -o DIR, or remove this one."});
     options.resume = false;
     return "There is no state.h5 in '" + options.output + "': the run starts afresh.";
   }

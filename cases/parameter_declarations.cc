@@ -103,7 +103,7 @@ void declare(LayerParameters &layer, Declarations &entries)
                  Number::between(1., 3.));
   entries.number("Installation gap ratio", layer.installation_gap,
                  "Largest gap that is bonded, over the mean grain radius [-].",
-                 Number::between(0.05, 1.));
+                 Number::between(0.1, 1.));
   entries.number("Grain density", layer.grain_density,
                  "Of the solid; the rock's is less by the porosity [kg/m^3].",
                  Number::above(0.));

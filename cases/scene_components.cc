@@ -181,6 +181,7 @@ void add_common_components(Scene &scene)
                    {Stage::constrain}, 0, "bridging domain",
                    reason_for(p, "bridging domain"));
 }
+
 void add_foundation(Scene &scene, std::unique_ptr<MeshFoundation> foundation)
 {
   scene.simulation->add(std::move(foundation), {Stage::forces}, rank_loads, "foundation",
@@ -208,7 +209,7 @@ void Scene::add_breakage_components()
   {
     if (parameters.run.driver != "quasi-static")
       return;
-    const StiffnessSums sums = grain_stiffness(*this, false);
+    const StiffnessSums sums = grain_stiffness(*this);
     discrete::scale_density(grains->state.grains, sums.translation, sums.rotation,
                             mass_weight, dt0);
   };

@@ -195,7 +195,10 @@ int run_static(const Parameters &p,
   for (const std::string &warning : summary.warnings)
     log.line("warning: " + warning);
   log.line(status + ": " + std::to_string(step) + " solves, wall force " +
-           coupling::shortest_text(force) + " N");
+           coupling::shortest_text(force) + " N" +
+           (status == "interrupted" ? "; a static run keeps no checkpoint, run it again "
+                                      "into another directory"
+                                    : ""));
   return status == "completed" ? 0 : status == "failed" ? 2 : 3;
 }
 } // namespace antiform::cases

@@ -88,8 +88,7 @@ void LocalDamping::damp_mesh(const double dt)
   for (std::int64_t i = 0; i < n; ++i)
   {
     const double v = velocity[i];
-    const double size = coefficient_ * std::abs(force[i]);
-    double d = v == 0. ? 0. : v > 0. ? -size : size;
+    double d = local_damping(coefficient_, force[i], v);
     if (combined)
     {
       d = combined_damping(coefficient_, force[i], before[i], v);

@@ -7,17 +7,6 @@
 
 namespace antiform::discrete
 {
-namespace
-{
-/// -alpha |force| sgn(velocity), sgn(0) = 0; written for the vectoriser.
-inline double opposing(const double alpha, const double force, const double velocity)
-{
-  const double size = alpha * std::abs(force);
-  const double signed_size = velocity > 0. ? -size : size;
-  return velocity == 0. ? 0. : signed_size;
-}
-} // namespace
-
 // Bare pointers: they stay in registers, and the loops turn into vector code.
 
 void GrainDamping::start(const std::size_t n_grains)
@@ -53,7 +42,7 @@ double damp(const std::int64_t begin,
       r_before[i] = r[i];
     }
     else
-      f = opposing(alpha, r[i], v[i]);
+      f = local_damping(alpha, r[i], v[i]);
     power += (force[i] + f) * v[i];
     force[i] = f;
   }

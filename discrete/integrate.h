@@ -17,9 +17,9 @@ namespace antiform::discrete
 /// holds back the bending of a slender layer. Combined damping damps it all the same.
 struct GrainDamping
 {
-  double coefficient = 0.;                      ///< alpha in [0, 1)
+  double coefficient = 0.; ///< alpha in [0, 1)
   bool combined = false;
-  std::vector<double> force_x, force_y, torque; ///< of the last step [N], [N m]
+  std::vector<double> force_x, force_y, torque;          ///< of the last step [N], [N m]
   std::vector<double> before_x, before_y, before_torque; ///< r of the last step; combined
   std::vector<double> energy; ///< removed so far, per block of grains [J]
 
@@ -29,7 +29,13 @@ struct GrainDamping
 /// Grains whose damping energy is summed up as one.
 constexpr std::size_t damping_block = 512;
 
-/// Combined damping of one degree of freedom; written for the vectoriser.
+// Of one degree of freedom; sgn(0) = 0; written for the vectoriser.
+inline double local_damping(const double alpha, const double force, const double velocity)
+{
+  const double size = force < 0. ? -alpha * force : alpha * force;
+  const double opposing = velocity > 0. ? -size : size;
+  return velocity == 0. ? 0. : opposing;
+}
 inline double combined_damping(const double alpha,
                                const double force,
                                const double force_before,

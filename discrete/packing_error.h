@@ -6,7 +6,7 @@
 
 namespace antiform::discrete
 {
-/// No packing as asked for is found. main() reports it and exits 2.
+/// No packing as asked for is found: the run ends with exit status 2.
 struct PackingError : std::runtime_error
 {
   /// \param reason what happened and what to change

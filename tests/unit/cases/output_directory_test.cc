@@ -48,13 +48,10 @@ TEST(OutputDirectory, AcceptsAnEmptyOrForeignDirectoryAndRefusesAnotherRun)
   EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), ""); // empty, made just now
   scratch.write("a/b/notes.txt", "mine");
   EXPECT_EQ(refusal_of(options_for(scratch.path("a/b"))), "");
-  for (const std::string file : {"state.h5", "history.csv"})
-  {
-    scratch.write(file + ".d/" + file, "old");
-    const std::string text = refusal_of(options_for(scratch.path(file + ".d")));
-    EXPECT_NE(text.find("holds another run (" + file), std::string::npos) << text;
-    EXPECT_NE(text.find("--resume"), std::string::npos) << text;
-  }
+  scratch.write("run/state.h5", "old");
+  const std::string text = refusal_of(options_for(scratch.path("run")));
+  EXPECT_NE(text.find("holds another run (state.h5"), std::string::npos) << text;
+  EXPECT_NE(text.find("--resume"), std::string::npos) << text;
 }
 
 TEST(OutputDirectory, ResumesWhereThereIsAStateAndElseSaysThatItStartsAfresh)
@@ -77,8 +74,11 @@ TEST(OutputDirectory, KeepsResultsThatNoStateGoesWith)
 {
   const Scratch scratch;
   scratch.write("static/history.csv", "old");
-  RunOptions options = options_for(scratch.path("static"), true);
-  EXPECT_THROW(prepare_output_directory(options), InputError);
+  for (const bool resume : {false, true})
+  {
+    const std::string text = refusal_of(options_for(scratch.path("static"), resume));
+    EXPECT_NE(text.find("no state.h5"), std::string::npos) << text;
+  }
 }
 
 TEST(OutputDirectory, RefusesWhatCannotBeWrittenTo)

@@ -76,3 +76,48 @@ TEST(GrainRun, EndsWhereItsSamplesDoNotMatter)
   }
   EXPECT_NEAR(ends[0] / ends[1], 1., 0.02); // a sample is 1 % of it
 }
+
+TEST(ContinuumRun, IsPressedByTheWeightOfTheMatrix)
+{
+  // With the shortening the same, wall forces differ by that of the weights:
+  // 1/2 rho g H^2 with H = 50 m, the bulk density 0.84 of the grains'.
+  const TemporaryFolder folder;
+  std::vector<double> forces;
+  for (const char *density : {"2500", "5000"})
+  {
+    run_into(folder.path(density), {"Run/Driver=static", "Run/End shortening=1e-3",
+                                    "Components=layer, matrix, walls, gravity",
+                                    std::string("Matrix/Grain density=") + density});
+    forces.push_back(result(summary_of(folder.path(density)), "wall_force"));
+  }
+  const double weight = 0.5 * 0.84 * 2500. * 9.81 * 50. * 50.;
+  EXPECT_NEAR((forces[1] - forces[0]) / weight, 1., 1e-3); // g: 9.80665 or 9.81
+}
+
+TEST(GrainRun, FeelsAFixedBase)
+{
+  const TemporaryFolder folder;
+  std::vector<double> stiffness;
+  for (const char *base : {"roller", "fixed"})
+  {
+    const std::string directory = folder.path(base);
+    const Outcome outcome =
+        run_tiny(directory, set(unbreakable({"Matrix/Representation=grains",
+                                             std::string("Matrix/Base=") + base})));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    stiffness.push_back(result(summary_of(directory), "section_stiffness"));
+  }
+  EXPECT_GT(stiffness[1] / stiffness[0],
+            1.01); // held between the walls, it must yield less
+}
+
+TEST(GrainRun, CountsJointsOverACohesionAlone)
+{
+  const TemporaryFolder folder;
+  const Outcome outcome = run_tiny(
+      folder.path("run"), set({"Layer/Breakable=false", "Run/End shortening=2e-3",
+                               "Layer/Flat joint/Tensile strength=0"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_GT(result(summary_of(folder.path("run")), "unbreakable_joints_over_strength"),
+            0.);
+}
