@@ -39,9 +39,10 @@ void add_run(CLI::App &app, CommandLine &line)
       ->type_name("SECONDS");
   command.footer(
       "Example:\n  antiform run cases/burial-depth/quick.prm -o out "
-      "--set \"Matrix/Burial depth ratio=5\"\n  mpirun -np 2 antiform run "
-      "cases/burial-depth/anticline.prm --threads 1 --time-limit 3600\nExit status: 0 "
-      "done, "
+      "--set \"Matrix/Burial depth ratio=5\"\n"
+      "  antiform run cases/burial-depth/anticline.prm --threads 2 --time-limit 3600\n"
+      "  mpirun -np 4 antiform run DECK -o out   (continuum only)\n"
+      "Exit status: 0 done, "
       "1 error of the deck, an option or a file, 2 error of the physics,\n3 interrupted: "
       "'antiform run DECK -o DIR --resume' goes on.\n");
   command.callback([&line] { line.command = CommandLine::Command::run; });

@@ -1,5 +1,4 @@
 #include "cases/command_line.h"
-#include "cases/interrupt.h"
 #include "cases/output_directory.h"
 #include "continuum/errors.h"
 
@@ -55,7 +54,6 @@ int run_deck(RunOptions options, MPI_Comm communicator)
            });
   options.output = ranks::broadcast(communicator, options.output, 0);
   options.resume = ranks::broadcast(communicator, options.resume, 0);
-  catch_interrupts();
   return run(parameters, options, communicator);
 }
 

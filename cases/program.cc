@@ -14,9 +14,9 @@
 #include <deal.II/base/mpi.h>
 
 #include <omp.h>
-#include <sys/resource.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -49,29 +49,25 @@ struct Past
   double wall_seconds = 0., cpu_seconds = 0.;
 };
 
-double cpu_seconds()
-{
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
 /// One stepped run from built scene to summary.
 class SteppedRun
 {
 public:
-  SteppedRun(const Parameters &parameters, const RunOptions &options, RunLog &log)
+  SteppedRun(const Parameters &parameters,
+             const RunOptions &options,
+             RunLog &log,
+             const MPI_Comm communicator)
       : parameters_(parameters)
       , options_(options)
+      , communicator_(communicator)
       , log_(log)
       , begin_(Timer::now())
   {
   }
 
-  int operator()(const MPI_Comm communicator, coupling::StateReader *state)
+  int operator()(coupling::StateReader *state)
   {
-    scene_ = build(parameters_, communicator,
+    scene_ = build(parameters_, communicator_,
                    [this](const std::string &what) { log_.line("  " + what); });
     // The recorder is a component of the simulation but made apart: it watches all of it.
     auto recorder = std::make_unique<Recorder>(*scene_, options_.output, options_.resume);
@@ -111,7 +107,7 @@ private:
       archive.text("deck", deck);
     }
     double wall = past_.wall_seconds + seconds_since(begin_);
-    double cpu = past_.cpu_seconds + cpu_seconds();
+    double cpu = past_.cpu_seconds + measure_usage(communicator_).cpu_seconds;
     archive.value("seconds/wall", wall);
     archive.value("seconds/cpu", cpu);
     if (archive.is_loading())
@@ -121,7 +117,7 @@ private:
 
   void checkpoint()
   {
-    coupling::StateWriter writer;
+    coupling::StateWriter writer(communicator_);
     visit_state(writer);
     writer.commit(options_.output + "/state.h5");
   }
@@ -148,6 +144,27 @@ private:
                 " steps per 1e-3 of shortening");
   }
 
+  enum class Pause
+  {
+    none,
+    checkpoint,
+    interrupted,
+    out_of_time
+  };
+  /// The most urgent wish of any rank: signals and clocks reach them apart.
+  Pause agree_on_pause(const Timer::time_point last_checkpoint) const
+  {
+    Pause wish = Pause::none;
+    if (seconds_since(last_checkpoint) > 60. * parameters_.output.checkpoint_minutes)
+      wish = Pause::checkpoint;
+    if (interrupt_signal() != 0)
+      wish = Pause::interrupted;
+    if (options_.time_limit > 0. && seconds_since(begin_) > options_.time_limit)
+      wish = Pause::out_of_time;
+    return static_cast<Pause>(
+        dealii::Utilities::MPI::max(static_cast<int>(wish), communicator_));
+  }
+
   int step_to_end()
   {
     if (recorder_->finished())
@@ -155,6 +172,7 @@ private:
       log_.line("the run had ended already, at " + recorder_->why_finished());
       return 0;
     }
+    catch_interrupts(); // until now there was nothing that a signal could cost
     if (!options_.resume)
       checkpoint();
     coupling::Simulation &simulation = *scene_->simulation;
@@ -167,21 +185,18 @@ private:
       simulation.step();
       if (simulation.clock().step % 64 != 0)
         continue;
-      const bool out_of_time =
-          options_.time_limit > 0. && seconds_since(begin_) > options_.time_limit;
-      if (interrupt_signal() != 0 || out_of_time)
-      {
-        checkpoint();
-        log_.line(out_of_time
-                      ? "time limit reached: checkpoint written, continue with "
-                        "--resume"
-                      : "interrupted: checkpoint written, continue with --resume");
-        return 3;
-      }
-      if (seconds_since(last_checkpoint) > 60. * parameters_.output.checkpoint_minutes)
+      const Pause pause = agree_on_pause(last_checkpoint);
+      if (pause != Pause::none)
       {
         checkpoint();
         last_checkpoint = Timer::now();
+      }
+      if (pause == Pause::interrupted || pause == Pause::out_of_time)
+      {
+        log_.line(std::string(pause == Pause::out_of_time ? "time limit reached"
+                                                          : "interrupted") +
+                  ": checkpoint written, continue with --resume");
+        return 3;
       }
       if (log_.is_due())
       {
@@ -206,9 +221,6 @@ private:
   void describe_scene(Summary &summary) const
   {
     const Scene &s = *scene_;
-    if (s.mesh)
-      summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(
-          s.solid->dof_handler().get_communicator()));
     auto &sizes = summary.sizes;
     sizes["grains"] =
         s.grains ? static_cast<std::int64_t>(s.grains->state.grains.size()) : 0;
@@ -238,10 +250,11 @@ private:
     summary.version = ANTIFORM_VERSION;
     summary.status = status;
     summary.wall_seconds = past_.wall_seconds + seconds_since(begin_);
-    summary.cpu_seconds = past_.cpu_seconds + cpu_seconds();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    summary.peak_memory = usage.ru_maxrss * 1024;
+    const Usage usage = measure_usage(communicator_);
+    summary.cpu_seconds = past_.cpu_seconds + usage.cpu_seconds;
+    summary.peak_memory = usage.peak_memory;
+    summary.ranks =
+        static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator_));
     summary.threads = omp_get_max_threads();
     for (const Effect &effect : list_effects(parameters_))
       summary.effects[effect.name] = {effect.state == Effect::State::present,
@@ -252,7 +265,8 @@ private:
       recorder_->fill(summary);
     if (!failure_.empty())
       summary.warnings.push_back(failure_);
-    write_summary(options_.output + "/summary.json", summary);
+    if (dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
+      write_summary(options_.output + "/summary.json", summary);
     print_results(summary);
   }
 
@@ -279,6 +293,7 @@ private:
 
   const Parameters &parameters_;
   const RunOptions &options_;
+  MPI_Comm communicator_;
   RunLog &log_;
   Timer::time_point begin_;
   std::unique_ptr<Scene> scene_;
@@ -290,7 +305,8 @@ private:
 /// The checkpoint is opened before anything is built or written: a damaged one, or that
 /// of another deck, costs nothing.
 std::optional<coupling::StateReader> open_state(const Parameters &parameters,
-                                                const RunOptions &options)
+                                                const RunOptions &options,
+                                                const MPI_Comm communicator)
 {
   if (!options.resume)
     return {};
@@ -298,7 +314,7 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
   try
   {
     std::optional<coupling::StateReader> state;
-    state.emplace(path);
+    state.emplace(path, communicator);
     std::string deck;
     state->text("deck", deck);
     if (deck != effective_deck(parameters))
@@ -319,21 +335,26 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
   }
 }
 
-void demand_one_rank(const Parameters &p, const MPI_Comm communicator)
+void demand_one_rank_of_grains(const Parameters &p, const MPI_Comm communicator)
 {
   const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
   if (n_ranks == 1)
     return;
-  const std::string on_ranks = " on " + std::to_string(n_ranks) + " MPI ranks: ";
   if (p.layer.representation == "grains")
     throw InputError(
-        {"'Layer/Representation' is grains" + on_ranks +
-         "grains run on one rank. Start without mpirun and use --threads, or set it to "
-         "continuum with the static driver, which runs on any number."});
-  if (p.run.driver != "static")
-    throw InputError({"'Run/Driver' is " + p.run.driver + on_ranks +
-                      "what steps in time runs on one rank. Start without mpirun and use "
-                      "--threads, or set it to static, which runs on any number."});
+        {"'Layer/Representation' is grains on " + std::to_string(n_ranks) +
+         " MPI ranks: grains run on one rank. Start without mpirun and use --threads, or "
+         "set it to continuum, which runs on any number."});
+}
+
+/// Beside other ranks of one machine a rank has one thread, unless told otherwise.
+void choose_threads(const RunOptions &options, const MPI_Comm communicator)
+{
+  if (options.threads > 0)
+    omp_set_num_threads(options.threads);
+  else if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+           std::getenv("OMP_NUM_THREADS") == nullptr)
+    omp_set_num_threads(1);
 }
 } // namespace
 
@@ -341,11 +362,11 @@ int run(const Parameters &parameters,
         const RunOptions &options,
         const MPI_Comm communicator)
 {
-  demand_one_rank(parameters, communicator);
-  if (options.threads > 0)
-    omp_set_num_threads(options.threads);
+  demand_one_rank_of_grains(parameters, communicator);
+  choose_threads(options, communicator);
   const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
-  std::optional<coupling::StateReader> state = open_state(parameters, options);
+  std::optional<coupling::StateReader> state =
+      open_state(parameters, options, communicator);
   std::filesystem::create_directories(options.output + "/fields");
   RunLog log(options.output + "/log.txt", first, options.resume);
   if (first && !options.resume)
@@ -354,10 +375,10 @@ int run(const Parameters &parameters,
 
   if (parameters.run.driver == "static")
     return run_static(parameters, options, log, communicator);
-  SteppedRun stepped(parameters, options, log);
+  SteppedRun stepped(parameters, options, log, communicator);
   try
   {
-    return stepped(communicator, state ? &*state : nullptr);
+    return stepped(state ? &*state : nullptr);
   }
   catch (const NumericalError &error)
   {

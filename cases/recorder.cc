@@ -48,14 +48,23 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
   if (per_step > 0.)
     sample_interval_ = std::max<std::int64_t>(
         1, std::llround(1e-3 / (p.output.samples_per_millistrain * per_step)));
-  if (!resumed)
+  if (!resumed && writes_tables())
   {
     history_.emplace(directory_ + "/history.csv", history_columns);
     if (scene.grains)
       crack_table_.emplace(directory_ + "/cracks.csv");
-    strain_origin_ = 0.;
   }
   find_surface();
+}
+
+bool Recorder::writes_tables() const
+{
+  return dealii::Utilities::MPI::this_mpi_process(scene_.communicator()) == 0;
+}
+
+double Recorder::over_ranks(const double share) const
+{
+  return dealii::Utilities::MPI::sum(share, scene_.communicator());
 }
 
 double Recorder::window() const
@@ -90,12 +99,8 @@ double Recorder::surface_uplift() const
   for (const std::uint32_t i : surface_)
     sum += scene_.mesh ? scene_.mesh->displacement.begin()[i]
                        : scene_.grains->state.grains.displacement_y[i];
-  if (scene_.mesh)
-  {
-    const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
-    sum = dealii::Utilities::MPI::sum(sum, comm);
-    n = dealii::Utilities::MPI::sum(n, comm);
-  }
+  sum = over_ranks(sum);
+  n = over_ranks(n);
   return n > 0. ? sum / n : 0.;
 }
 
@@ -128,10 +133,9 @@ double Recorder::mean_uplift(const double x_reference, const double half_width) 
         n += 1.;
       }
     }
-    const MPI_Comm comm = scene_.solid->dof_handler().get_communicator();
-    sum = dealii::Utilities::MPI::sum(sum, comm);
-    n = dealii::Utilities::MPI::sum(n, comm);
   }
+  sum = over_ranks(sum);
+  n = over_ranks(n);
   return n > 0. ? sum / n : 0.;
 }
 
@@ -181,6 +185,8 @@ void Recorder::run(const Stage, const Clock &clock)
     return;
   const Sample sample = measure();
   energies_ = scene_.simulation->energies();
+  for (double *const term : energies_.terms())
+    *term = over_ranks(*term);
   if (strain_.empty())
     strain_origin_ = energies_.strain_grains + energies_.strain_continuum;
   ratio_ = scene_.constrained->unbalanced_ratio();
@@ -225,26 +231,27 @@ void Recorder::append_history(const Clock &clock, const Sample &sample)
                          ? scene_.bridging->displacement_gap(scene_.grains->state.grains,
                                                              scene_.mesh->displacement)
                          : 0.;
-  history_->append(std::vector<double>{static_cast<double>(clock.step),
-                                       clock.time,
-                                       sample.shortening,
-                                       sample.axial_stress,
-                                       sample.wall_force,
-                                       sample.matrix_share,
-                                       static_cast<double>(n_tensile_),
-                                       static_cast<double>(n_shear_),
-                                       sample.fold_amplitude,
-                                       sample.limb_dip,
-                                       ratio_,
-                                       gap,
-                                       sample.surface_uplift,
-                                       energies_.boundary_work,
-                                       energies_.kinetic,
-                                       energies_.strain_grains,
-                                       energies_.strain_continuum,
-                                       energies_.slip,
-                                       energies_.damping,
-                                       energies_.fracture});
+  if (history_)
+    history_->append(std::vector<double>{static_cast<double>(clock.step),
+                                         clock.time,
+                                         sample.shortening,
+                                         sample.axial_stress,
+                                         sample.wall_force,
+                                         sample.matrix_share,
+                                         static_cast<double>(n_tensile_),
+                                         static_cast<double>(n_shear_),
+                                         sample.fold_amplitude,
+                                         sample.limb_dip,
+                                         ratio_,
+                                         gap,
+                                         sample.surface_uplift,
+                                         energies_.boundary_work,
+                                         energies_.kinetic,
+                                         energies_.strain_grains,
+                                         energies_.strain_continuum,
+                                         energies_.slip,
+                                         energies_.damping,
+                                         energies_.fracture});
 }
 
 void Recorder::append_cracks()
@@ -382,38 +389,33 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   std::vector<std::int64_t> integers{n_tensile_, n_shear_, 0, 0};
   if (!archive.is_loading())
   {
-    integers[2] = history_->offset();
+    integers[2] = history_ ? history_->offset() : 0;
     integers[3] = crack_table_ ? crack_table_->offset() : 0;
   }
   archive.array("recorder/integers", integers);
   n_tensile_ = integers[0];
   n_shear_ = integers[1];
-  const std::vector<double *> members{&peak_stress_,
-                                      &peak_strain_,
-                                      &peak_share_,
-                                      &first_crack_strain_,
-                                      &first_crack_stress_,
-                                      &next_field_,
-                                      &strain_origin_,
-                                      &largest_gap_,
-                                      &largest_terms_,
-                                      &mesh_watch_.largest_rotation,
-                                      &mesh_watch_.largest_strain,
-                                      &ratio_,
-                                      &energies_.boundary_work,
-                                      &energies_.kinetic,
-                                      &energies_.strain_grains,
-                                      &energies_.strain_continuum,
-                                      &energies_.slip,
-                                      &energies_.damping,
-                                      &energies_.fracture,
-                                      &last_.shortening,
-                                      &last_.axial_stress,
-                                      &last_.wall_force,
-                                      &last_.matrix_share,
-                                      &last_.fold_amplitude,
-                                      &last_.limb_dip,
-                                      &last_.surface_uplift};
+  std::vector<double *> members{&peak_stress_,
+                                &peak_strain_,
+                                &peak_share_,
+                                &first_crack_strain_,
+                                &first_crack_stress_,
+                                &next_field_,
+                                &strain_origin_,
+                                &largest_gap_,
+                                &largest_terms_,
+                                &mesh_watch_.largest_rotation,
+                                &mesh_watch_.largest_strain,
+                                &ratio_,
+                                &last_.shortening,
+                                &last_.axial_stress,
+                                &last_.wall_force,
+                                &last_.matrix_share,
+                                &last_.fold_amplitude,
+                                &last_.limb_dip,
+                                &last_.surface_uplift};
+  const auto terms = energies_.terms();
+  members.insert(members.end(), terms.begin(), terms.end());
   std::vector<double> values;
   for (const double *member : members)
     values.push_back(*member);
@@ -425,6 +427,8 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   for (std::size_t k = 0; k < members.size(); ++k)
     *members[k] = values[k];
   look_for_end(last_); // a completed run has nothing left to do
+  if (!writes_tables())
+    return;
   history_.emplace(
       coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[2]));
   if (scene_.grains)

@@ -50,6 +50,8 @@ private:
     double fold_amplitude = 0., limb_dip = 0., surface_uplift = 0.;
   };
   Sample measure() const;
+  bool writes_tables() const; ///< the first rank does
+  double over_ranks(double share) const;
   double mean_uplift(double x_reference, double half_width) const;
   double window() const; ///< half width over which a place is averaged [m]
   void find_surface();

@@ -52,6 +52,7 @@ struct Scene
   double shortening_rate = 0.; ///< at full speed [1/s]
 
   double shortening() const; ///< closure over the section's length [-]
+  MPI_Comm communicator() const;
   /// Friction, contacts and search, which the first broken bond calls for.
   void add_breakage_components();
   /// Components' arrays; joins the breakage components first where the state has them.

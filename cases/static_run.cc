@@ -17,7 +17,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <omp.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
@@ -105,6 +104,7 @@ int run_static(const Parameters &p,
   SmallStrainWatch watch;
   std::string status = "completed", failure;
   int step = 0;
+  catch_interrupts();
   while (step < n_steps)
   {
     const double elapsed =
@@ -165,11 +165,9 @@ int run_static(const Parameters &p,
     summary.warnings.push_back(failure);
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  summary.peak_memory = usage.ru_maxrss * 1024;
-  summary.cpu_seconds =
-      static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * usage.ru_utime.tv_usec;
+  const Usage usage = measure_usage(communicator);
+  summary.peak_memory = usage.peak_memory;
+  summary.cpu_seconds = usage.cpu_seconds;
   summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
   summary.threads = omp_get_max_threads();
   summary.sizes = {

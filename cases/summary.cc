@@ -2,7 +2,11 @@
 
 #include "coupling/output/whole_file.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -22,7 +26,22 @@ double finite(const std::string &path, const std::string &entry, const double x)
                              "log.txt for the step where it was lost.");
   return x;
 }
+
+double seconds(const timeval &time)
+{
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 } // namespace
+
+Usage measure_usage(const MPI_Comm communicator)
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  using dealii::Utilities::MPI::sum;
+  return {sum(seconds(usage.ru_utime) + seconds(usage.ru_stime), communicator),
+          static_cast<std::int64_t>(sum(
+              static_cast<unsigned long long>(usage.ru_maxrss) * 1024, communicator))};
+}
 
 void write_summary(const std::string &path, const Summary &summary)
 {

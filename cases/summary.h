@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mpi.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -42,6 +44,15 @@ struct Summary
   std::map<std::string, double> energy; ///< [J]
   std::map<std::string, EffectSummary> effects;
 };
+
+/// What the processes of all ranks have used so far.
+struct Usage
+{
+  double cpu_seconds = 0.;
+  std::int64_t peak_memory = 0; ///< largest resident sizes [bytes]
+};
+/// Collective.
+Usage measure_usage(MPI_Comm communicator);
 
 /// Write @p summary as JSON, whole or not at all. Numbers read back to the same bits.
 /// Throws std::runtime_error naming the entry if a number is NaN or infinite (nothing is

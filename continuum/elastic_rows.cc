@@ -117,11 +117,17 @@ double ElasticSolid::stable_step(const Vector &inverse_mass) const
 
 double ElasticSolid::strain_energy(const Vector &displacement) const
 {
+  return Utilities::MPI::sum(strain_energy_share(displacement),
+                             dof_handler_.get_communicator());
+}
+
+double ElasticSolid::strain_energy_share(const Vector &displacement) const
+{
   Vector force = make_vector();
   add_internal_force(displacement, force);
   double work = 0.;
   for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
     work -= 0.5 * force.local_element(i) * displacement.local_element(i);
-  return Utilities::MPI::sum(work, dof_handler_.get_communicator());
+  return work;
 }
 } // namespace antiform::continuum

@@ -117,7 +117,9 @@ public:
   };
   std::vector<CellState> cell_states(const Vector &displacement) const;
 
-  /// 1/2 u.K u, foundation included; collective [J].
+  /// 1/2 u.K u, foundation included [J]: this rank's rows of it, and all; all is
+  /// collective.
+  double strain_energy_share(const Vector &displacement) const;
   double strain_energy(const Vector &displacement) const;
 
   const dealii::IndexSet &locally_owned() const { return locally_owned_; }

@@ -39,9 +39,8 @@ void ConstrainedForces::measure()
     for (std::size_t i = 0; i < s.mass.locally_owned_size(); ++i)
       (s.inverse_mass.begin()[i] > 0. ? free : carried) +=
           s.force.begin()[i] * s.force.begin()[i];
-    const MPI_Comm comm = s.solid.dof_handler().get_communicator();
-    free = std::sqrt(dealii::Utilities::MPI::sum(free, comm));
-    carried = std::sqrt(dealii::Utilities::MPI::sum(carried, comm));
+    free = std::sqrt(dealii::Utilities::MPI::sum(free, s.communicator()));
+    carried = std::sqrt(dealii::Utilities::MPI::sum(carried, s.communicator()));
   }
   ratio_ = carried > 0. ? free / carried : 0.;
 }
@@ -117,9 +116,9 @@ void LocalDamping::visit_state(StateArchive &archive)
   archive.array("damping/grain_before_x", grain_damping_.before_x);
   archive.array("damping/grain_before_y", grain_damping_.before_y);
   archive.array("damping/grain_before_torque", grain_damping_.before_torque);
-  archive.array("damping/mesh_force", mesh_force_);
-  archive.array("damping/mesh_before", mesh_before_);
-  archive.value("damping/mesh_energy", mesh_energy_);
+  archive.owned_array("damping/mesh_force", mesh_force_);
+  archive.owned_array("damping/mesh_before", mesh_before_);
+  archive.owned_value("damping/mesh_energy", mesh_energy_);
 }
 
 Walls::Walls(std::vector<Wall> &walls,
@@ -193,13 +192,15 @@ double Walls::grain_reaction(const int region) const
 
 double Walls::mesh_reaction(const bool of_layer) const
 {
+  if (mesh_ == nullptr)
+    return 0.;
   double sum = 0.;
-  if (mesh_ != nullptr)
-    for (const PrescribedDof &entry : mesh_->prescribed)
-      if (entry.wall >= 0)
-        sum += (of_layer ? entry.layer_share : 1.) * entry.reaction *
-               walls_[entry.wall].normal.x;
-  return sum / static_cast<double>(walls_.size());
+  for (const PrescribedDof &entry : mesh_->prescribed)
+    if (entry.wall >= 0)
+      sum += (of_layer ? entry.layer_share : 1.) * entry.reaction *
+             walls_[entry.wall].normal.x;
+  return dealii::Utilities::MPI::sum(sum, mesh_->communicator()) /
+         static_cast<double>(walls_.size());
 }
 
 double Walls::closure() const
@@ -230,6 +231,6 @@ void Walls::visit_state(StateArchive &archive)
     archive.value(name + "/velocity", walls_[w].velocity);
     archive.value(name + "/work", walls_[w].work);
   }
-  archive.value("walls/support_work", support_work_);
+  archive.owned_value("walls/support_work", support_work_);
 }
 } // namespace antiform::coupling

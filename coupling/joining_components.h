@@ -110,7 +110,7 @@ public:
   /// Mean over the walls of the force that presses on grains of @p region, and on the
   /// mesh [N].
   double grain_reaction(int region) const;
-  /// \return that of the whole mesh, or of the layer's part of it
+  /// \return that of the whole mesh, or of the layer's part of it; collective
   double mesh_reaction(bool of_layer = false) const;
   /// Shortening of the section so far: inward displacement of all walls [m].
   double closure() const;

@@ -97,7 +97,7 @@ void MeshMotion::add_energies(Energies &energies) const
   for (std::size_t i = 0; i < before_.size(); ++i)
     energies.kinetic +=
         0.5 * state_.mass.begin()[i] * before_[i] * state_.velocity.begin()[i];
-  energies.strain_continuum += state_.solid.strain_energy(state_.displacement);
+  energies.strain_continuum += state_.solid.strain_energy_share(state_.displacement);
 }
 
 void MeshMotion::visit_state(StateArchive &archive)
@@ -106,7 +106,7 @@ void MeshMotion::visit_state(StateArchive &archive)
   {
     const std::size_t n = state_.mass.locally_owned_size();
     std::vector<double> values(vector.begin(), vector.begin() + n);
-    archive.array(name, values);
+    archive.owned_array(name, values);
     std::copy(values.begin(), values.end(), vector.begin());
     vector.update_ghost_values();
   };

@@ -28,6 +28,7 @@ struct MeshState
   std::vector<PrescribedDof> prescribed;
 
   explicit MeshState(continuum::ElasticSolid &body);
+  MPI_Comm communicator() const { return solid.dof_handler().get_communicator(); }
   /// Prescribe a dof; its inverse mass becomes zero.
   void prescribe(std::uint32_t dof, int wall, double layer_share = 0.);
   /// Inertial masses for quasi-static work: M* = max(M, dt0^2/4 sum_K |K_JK|).

@@ -50,6 +50,11 @@ struct Energies
     return kinetic + strain_grains + strain_continuum + slip + damping + fracture;
   }
   double magnitude() const;
+  std::array<double *, 7> terms()
+  {
+    return {&boundary_work, &kinetic, &strain_grains, &strain_continuum,
+            &slip,          &damping, &fracture};
+  }
 };
 
 /// One effect of a scene. It exists only if the scene calls for it, and it overrides only
@@ -62,6 +67,7 @@ public:
   virtual void run(Stage stage, const Clock &clock) = 0;
   /// Whether the last run() did anything: a search that was not needed does not count.
   virtual bool acted() const { return true; }
+  /// Add this rank's share.
   virtual void add_energies(Energies &) const {}
   virtual void visit_state(StateArchive &) {}
 };
@@ -103,6 +109,7 @@ public:
 
   const Clock &clock() const { return clock_; }
   void set_sampler(std::function<bool(const Clock &)> due) { due_ = std::move(due); }
+  /// This rank's share of the ledger; the sum over ranks is the model's.
   Energies energies() const;
   std::vector<EffectCount> effects() const;
   /// The clock, the counts and every component's arrays.

@@ -2,12 +2,15 @@
 
 #include "coupling/output/whole_file.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <hdf5.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -21,9 +24,12 @@ namespace antiform::coupling
 namespace
 {
 const std::string magic = "antiform state file\n";
-const int format_version = 1;
+const int format_version = 2;
 const std::size_t block_size = 512;
 const char *const contents_name = "contents";
+const char *const ranks_name = "ranks"; // how many wrote the file
+
+namespace ranks = dealii::Utilities::MPI;
 
 /// Owner of an HDF5 identifier. A negative one is a failed call.
 class Handle
@@ -240,10 +246,47 @@ std::string problem_of(const std::string &bytes)
 void check_name(const std::string &name)
 {
   const std::string path = '/' + name + '/';
-  if (name == contents_name || path.find("//") != std::string::npos ||
-      path.find("/./") != std::string::npos || name.find('\n') != std::string::npos)
+  if (name == contents_name || name == ranks_name ||
+      path.find("//") != std::string::npos || path.find("/./") != std::string::npos ||
+      name.find('\n') != std::string::npos)
     throw std::logic_error("A state entry cannot be called '" + name +
                            "': give it words separated by single slashes.");
+}
+
+/// Do @p work on the first rank; what it throws is thrown on every rank.
+void on_first_rank(const MPI_Comm communicator, const std::function<void()> &work)
+{
+  std::string problem;
+  if (ranks::this_mpi_process(communicator) == 0)
+    try
+    {
+      work();
+    }
+    catch (const std::runtime_error &error)
+    {
+      problem = error.what();
+    }
+  problem = ranks::broadcast(communicator, problem);
+  if (!problem.empty())
+    throw std::runtime_error(problem);
+}
+
+void write_state(const std::string &path,
+                 const std::map<std::string, StateEntry> &entries)
+{
+  const QuietHdf5 quiet;
+  std::string image;
+  try
+  {
+    image = make_image(entries);
+  }
+  catch (const std::runtime_error &error)
+  {
+    throw std::runtime_error("'" + path + "' cannot be composed: " + error.what() + ".");
+  }
+  const std::uint64_t crc = crc64(image.data(), image.size());
+  image.insert(0, make_block(format_version, block_size + image.size(), crc));
+  replace_file(path, image);
 }
 
 const char *type_name(const std::size_t kind)
@@ -280,6 +323,13 @@ void StateArchive::value(const std::string &name, double &x)
   x = values[0];
 }
 
+void StateArchive::owned_value(const std::string &name, double &x)
+{
+  std::vector<double> values(1, x);
+  owned_array(name, values);
+  x = values[0];
+}
+
 void StateArchive::value(const std::string &name, std::int64_t &x)
 {
   std::vector<std::int64_t> values(1, x);
@@ -311,30 +361,41 @@ void StateWriter::text(const std::string &name, std::string &value)
   add(name, value);
 }
 
-void StateWriter::commit(const std::string &path) const
+void StateWriter::owned_array(const std::string &name, std::vector<double> &values)
 {
-  const QuietHdf5 quiet;
-  std::string image;
-  try
-  {
-    image = make_image(entries_);
-  }
-  catch (const std::runtime_error &error)
-  {
-    throw std::runtime_error("'" + path + "' cannot be composed: " + error.what() + ".");
-  }
-  const std::uint64_t crc = crc64(image.data(), image.size());
-  image.insert(0, make_block(format_version, block_size + image.size(), crc));
-  replace_file(path, image);
+  std::vector<double> all;
+  for (const std::vector<double> &part : ranks::gather(communicator_, values))
+    all.insert(all.end(), part.begin(), part.end());
+  add(name, std::move(all)); // nothing, but on the first rank
 }
 
-StateReader::StateReader(const std::string &path)
-    : path_(path)
+void StateWriter::commit(const std::string &path) const
 {
-  std::string bytes = read_file(path);
-  const std::string problem = problem_of(bytes);
-  if (!problem.empty())
-    throw std::runtime_error("'" + path + "' cannot be resumed from: " + problem);
+  on_first_rank(communicator_,
+                [&]
+                {
+                  std::map<std::string, StateEntry> entries = entries_;
+                  entries[ranks_name] = std::vector<std::int64_t>{
+                      std::int64_t{ranks::n_mpi_processes(communicator_)}};
+                  write_state(path, entries);
+                });
+}
+
+StateReader::StateReader(const std::string &path, const MPI_Comm communicator)
+    : path_(path)
+    , communicator_(communicator)
+{
+  std::string bytes;
+  on_first_rank(communicator,
+                [&]
+                {
+                  bytes = read_file(path);
+                  const std::string problem = problem_of(bytes);
+                  if (!problem.empty())
+                    throw std::runtime_error("'" + path +
+                                             "' cannot be resumed from: " + problem);
+                });
+  bytes = ranks::broadcast(communicator, bytes);
   const QuietHdf5 quiet;
   try
   {
@@ -346,8 +407,15 @@ StateReader::StateReader(const std::string &path)
     throw std::runtime_error("'" + path + "' cannot be resumed from: " + error.what() +
                              ". Resume with the program that wrote it, or start afresh.");
   }
+  const std::int64_t n_ranks = ranks::n_mpi_processes(communicator);
+  const std::int64_t n_written = find<std::vector<std::int64_t>>(ranks_name).at(0);
+  if (n_ranks != n_written)
+    throw std::runtime_error("'" + path + "' was written by " +
+                             std::to_string(n_written) + " MPI rank(s), this run has " +
+                             std::to_string(n_ranks) + ". Resume with mpirun -np " +
+                             std::to_string(n_written) + ", or start afresh.");
   for (const auto &entry : entries_)
-    is_read_[entry.first] = false;
+    is_read_[entry.first] = entry.first == ranks_name;
 }
 
 template <class T>
@@ -373,12 +441,20 @@ template <class T>
 void StateReader::load(const std::string &name, std::vector<T> &values)
 {
   const std::vector<T> &stored = find<std::vector<T>>(name);
-  if (!values.empty() && values.size() != stored.size())
-    throw std::runtime_error(
-        "'" + path_ + "' has " + std::to_string(stored.size()) + " values in entry '" +
-        name + "', the scene of this deck needs " + std::to_string(values.size()) +
-        ". Resume with the deck that wrote it, or start afresh.");
+  if (!values.empty())
+    check_size(name, stored.size(), values.size());
   values = stored;
+}
+
+void StateReader::check_size(const std::string &name,
+                             const std::size_t stored,
+                             const std::size_t wanted) const
+{
+  if (stored != wanted)
+    throw std::runtime_error("'" + path_ + "' has " + std::to_string(stored) +
+                             " values in entry '" + name +
+                             "', the scene of this deck needs " + std::to_string(wanted) +
+                             ". Resume with the deck that wrote it, or start afresh.");
 }
 
 void StateReader::array(const std::string &name, std::vector<double> &values)
@@ -389,6 +465,21 @@ void StateReader::array(const std::string &name, std::vector<double> &values)
 void StateReader::array(const std::string &name, std::vector<std::int64_t> &values)
 {
   load(name, values);
+}
+
+void StateReader::owned_array(const std::string &name, std::vector<double> &values)
+{
+  const std::vector<double> &stored = find<std::vector<double>>(name);
+  std::size_t begin = 0, total = 0, rank = 0;
+  for (const std::size_t n : ranks::all_gather(communicator_, values.size()))
+  {
+    begin += rank < ranks::this_mpi_process(communicator_) ? n : 0;
+    total += n;
+    ++rank;
+  }
+  check_size(name, stored.size(), total);
+  std::copy_n(stored.begin() + static_cast<std::ptrdiff_t>(begin), values.size(),
+              values.begin());
 }
 
 void StateReader::text(const std::string &name, std::string &value)

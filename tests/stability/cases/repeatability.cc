@@ -92,18 +92,78 @@ TEST(Repeatability, RanksAgreeOnTheForceOfAContinuum)
   EXPECT_NEAR(0.5 * force[1] * shortening[1] * length / energy[1], 1., 1e-6);
 }
 
-TEST(Repeatability, WhatRunsOnOneRankRefusesTwo)
+namespace
+{
+/// A bent, loaded layer of continuum that moves in time.
+std::string moving_continuum(const std::string &directory)
+{
+  return "run " + tiny_deck() + " -o " + directory +
+         set({"Layer/Representation=continuum", "Layer/Shape=cosine",
+              "Components=layer, matrix, foundation, gravity, surface pressure, walls, "
+              "damping",
+              "Surface pressure/Pressure=1e6", "Run/End shortening=2e-4"});
+}
+} // namespace
+
+TEST(Repeatability, RanksAgreeOnAContinuumThatMoves)
 {
   const TemporaryFolder folder;
-  for (const std::vector<std::string> &entries :
-       {std::vector<std::string>{},
-        {"Layer/Representation=continuum", "Run/Driver=dynamic"}})
+  for (const int n_ranks : {1, 3})
   {
-    const Outcome outcome =
-        run_program("run " + tiny_deck() + " -o " + folder.path("run") + set(entries), 2);
-    EXPECT_EQ(outcome.status, 1) << outcome.output;
-    EXPECT_EQ(occurrences(outcome.output, "on 2 MPI ranks"), 1u) << outcome.output;
-    EXPECT_EQ(occurrences(outcome.output, "--threads"), 1u) << outcome.output;
-    EXPECT_TRUE(all_contents(folder.path("run")).empty());
+    const std::string directory = folder.path(std::to_string(n_ranks));
+    const Outcome outcome = run_program(moving_continuum(directory), n_ranks);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(summary_of(directory).at("ranks"), n_ranks);
+    EXPECT_LT(summary_of(directory).at("energy").at("closure_error"), 1e-3);
   }
+  const CsvTable one(folder.path("1/history.csv")), three(folder.path("3/history.csv"));
+  ASSERT_GT(one.size(), 10u);
+  ASSERT_EQ(one.size(), three.size());
+  // Sums in another order, and damping that turns with the sign of what is almost at
+  // rest.
+  for (const char *name : {"wall_force_N", "axial_stress_Pa", "fold_amplitude_m",
+                           "surface_uplift_m", "boundary_work_J", "kinetic_J",
+                           "strain_continuum_J", "damping_J", "unbalanced_ratio"})
+  {
+    const std::vector<double> a = one.column(name), b = three.column(name);
+    double largest = 0., difference = 0.;
+    for (std::size_t k = 0; k < a.size(); ++k)
+    {
+      largest = std::max(largest, std::abs(a[k]));
+      difference = std::max(difference, std::abs(a[k] - b[k]));
+    }
+    EXPECT_GT(largest, 0.) << name;
+    EXPECT_LT(difference / largest, 1e-8) << name;
+  }
+}
+
+TEST(Repeatability, RanksResumeToTheSameBits)
+{
+  const TemporaryFolder folder;
+  const std::string left_alone = folder.path("left_alone"), run = folder.path("run");
+  ASSERT_EQ(run_program(moving_continuum(left_alone), 2).status, 0);
+  const Outcome first = run_program(moving_continuum(run) + " --time-limit 1e-3", 2);
+  ASSERT_EQ(first.status, 3) << first.output;
+  EXPECT_EQ(occurrences(first.output, "time limit reached"), 1u) << first.output;
+
+  const Outcome alone = run_program(moving_continuum(run) + " --resume", 1);
+  EXPECT_EQ(alone.status, 1) << alone.output;
+  EXPECT_NE(alone.output.find("mpirun -np 2"), std::string::npos) << alone.output;
+
+  const Outcome second = run_program(moving_continuum(run) + " --resume", 2);
+  ASSERT_EQ(second.status, 0) << second.output;
+  EXPECT_NE(second.output.find("resumed at step 64"), std::string::npos) << second.output;
+  expect_same_file("history.csv", run, left_alone);
+  expect_same_answers(run, left_alone);
+}
+
+TEST(Repeatability, GrainsRefuseTwoRanks)
+{
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_program("run " + tiny_deck() + " -o " + folder.path("run"), 2);
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_EQ(occurrences(outcome.output, "on 2 MPI ranks"), 1u) << outcome.output;
+  EXPECT_EQ(occurrences(outcome.output, "--threads"), 1u) << outcome.output;
+  EXPECT_TRUE(all_contents(folder.path("run")).empty());
 }
