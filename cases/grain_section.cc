@@ -305,6 +305,11 @@ make_contacts(const Parameters &p, const GrainSection &section, const bool inter
         contacts.installed.push_back(
             {i, j, norm(g.reference(j) - g.reference(i)) - g.radius[i] - g.radius[j]});
       }
+    if (p.matrix.breakable && !interface_only)
+      contacts.groups.push_back(
+          {matrix_region, matrix_region,
+           law(section.modulus[matrix_region], section.matrix->law.stiffness_ratio,
+               p.matrix.residual_friction)});
   }
   return contacts;
 }

@@ -10,13 +10,12 @@ namespace antiform::cases
 {
 using discrete::StiffnessSums;
 
-StiffnessSums grain_stiffness(const Scene &scene)
+namespace
+{
+/// Contacts of the grains that no joint holds. The overlap is beyond them: weight 1.
+void add_contact_stiffness(const Scene &scene, StiffnessSums &sums)
 {
   const coupling::GrainState &state = scene.grains->state;
-  StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, false);
-  for (const discrete::Wall &wall : scene.walls)
-    for (const discrete::WallContact &contact : wall.contacts)
-      sums.translation[contact.grain] += contact.stiffness;
   for (const discrete::Contact &contact : scene.contacts.contacts)
   {
     const discrete::LinearContact &law = scene.contacts.law(state.grains, contact);
@@ -29,7 +28,30 @@ StiffnessSums grain_stiffness(const Scene &scene)
       sums.rotation[i] += shear * state.grains.radius[i] * state.grains.radius[i];
     }
   }
+}
+} // namespace
+
+StiffnessSums grain_stiffness(const Scene &scene)
+{
+  const coupling::GrainState &state = scene.grains->state;
+  StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, false);
+  for (const discrete::Wall &wall : scene.walls)
+    for (const discrete::WallContact &contact : wall.contacts)
+      sums.translation[contact.grain] += contact.stiffness;
+  add_contact_stiffness(scene, sums);
   return sums;
+}
+
+double make_heavier(Scene &scene)
+{
+  if (scene.parameters.run.driver != "quasi-static")
+    return 0.;
+  discrete::Grains &grains = scene.grains->state.grains;
+  const double lost = discrete::make_heavier(grains, grain_stiffness(scene),
+                                             scene.mass_weight, scene.dt0);
+  if (scene.bridging && !scene.bridging->is_factorised_for(grains))
+    scene.bridging->factorise(grains, scene.mesh->inverse_mass);
+  return lost;
 }
 
 namespace
@@ -57,9 +79,11 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
     discrete::Grains &grains = scene.grains->state.grains;
     const StiffnessSums sums = grain_stiffness(scene);
     scene.dt0 = scaled ? softest_step(scene, sums) : 0.;
-    discrete::scale_density(grains, sums.translation, sums.rotation, scene.mass_weight,
-                            scene.dt0);
-    std::vector<double> extra(grains.size(), 0.);
+    discrete::scale_density(grains, sums, scene.mass_weight, scene.dt0);
+    StiffnessSums loose{std::vector<double>(grains.size(), 0.),
+                        std::vector<double>(grains.size(), 0.)};
+    add_contact_stiffness(scene, loose);
+    std::vector<double> &extra = loose.translation; // an interface without friction
     for (const discrete::Wall &wall : scene.walls)
       for (const discrete::WallContact &contact : wall.contacts)
         extra[contact.grain] += contact.stiffness * contact.weight;

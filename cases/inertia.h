@@ -17,6 +17,11 @@ discrete::StiffnessSums grain_stiffness(const Scene &scene);
 /// \return the step that they allow, the deck's safety factor included [s]
 double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
 
+/// Grains that have come to carry more contacts must not be too light for the step of a
+/// quasi-static run: discrete::make_heavier(), and the bridging domain knows of it.
+/// \return kinetic energy lost [J]
+double make_heavier(Scene &scene);
+
 /// Time of an axial wave along the layer with its inertial masses [s].
 double layer_transit(const Scene &scene);
 } // namespace antiform::cases

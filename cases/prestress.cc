@@ -206,6 +206,7 @@ std::vector<coupling::GrainLoad> holding_forces(Scene &scene,
     add_wall_forces(grains, wall);
   if (!scene.contacts.installed.empty())
   {
+    scene.contacts.contacts.clear(); // found before they had the prestress
     search_contacts(grains, joints, scene.contacts);
     add_contact_forces(grains, scene.contacts, 0.);
   }

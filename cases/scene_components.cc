@@ -14,7 +14,6 @@
 namespace antiform::cases
 {
 using namespace coupling;
-using discrete::StiffnessSums;
 
 namespace
 {
@@ -34,6 +33,18 @@ enum Rank
   rank_damping = 96,
   rank_motion = 50
 };
+
+void add_contacts(Scene &scene)
+{
+  GrainState &state = scene.grains->state;
+  const auto heavier = [&scene] { return make_heavier(scene); };
+  scene.simulation->add(std::make_unique<ContactSearch>(state, scene.contacts, heavier),
+                        {Stage::forces}, rank_search, "search",
+                        reason_for(scene.parameters, "search"));
+  scene.simulation->add(std::make_unique<GrainContacts>(state, scene.contacts),
+                        {Stage::forces}, rank_contacts, "contacts",
+                        reason_for(scene.parameters, "contacts"));
+}
 } // namespace
 
 void add_grain_components(Scene &scene)
@@ -49,14 +60,7 @@ void add_grain_components(Scene &scene)
   { scene.simulation->later([&scene] { scene.add_breakage_components(); }); };
 
   if (p.has("matrix") && p.matrix.interface == "frictionless")
-  {
-    scene.contacts = make_contacts(p, *scene.grains, true);
-    discrete::search_contacts(state.grains, state.joints, scene.contacts);
-    simulation.add(std::make_unique<ContactSearch>(state, scene.contacts, [] {}),
-                   {Stage::forces}, rank_search, "search", reason("search"));
-    simulation.add(std::make_unique<GrainContacts>(state, scene.contacts),
-                   {Stage::forces}, rank_contacts, "contacts", reason("contacts"));
-  }
+    add_contacts(scene);
   if (p.has("matrix") && p.matrix.representation == "grains")
   {
     std::vector<GrainBase::Support> supports;
@@ -201,22 +205,9 @@ void Scene::add_breakage_components()
   discrete::Contacts all = make_contacts(parameters, *grains, false);
   all.contacts = contacts.contacts;
   all.lost_energy = contacts.lost_energy;
+  all.installed = contacts.installed; // with the prestress that is in them
   contacts = std::move(all);
-  if (listed)
-    return; // search and contacts are there; the wider groups force a search
-  // Grains that come to carry contacts as well must not be too light for the step.
-  const auto make_heavier = [this]
-  {
-    if (parameters.run.driver != "quasi-static")
-      return;
-    const StiffnessSums sums = grain_stiffness(*this);
-    discrete::scale_density(grains->state.grains, sums.translation, sums.rotation,
-                            mass_weight, dt0);
-  };
-  simulation->add(std::make_unique<ContactSearch>(state, contacts, make_heavier),
-                  {Stage::forces}, rank_search, "search",
-                  reason_for(parameters, "search"));
-  simulation->add(std::make_unique<GrainContacts>(state, contacts), {Stage::forces},
-                  rank_contacts, "contacts", reason_for(parameters, "contacts"));
+  if (!listed) // else search and contacts are there; the wider groups force a search
+    add_contacts(*this);
 }
 } // namespace antiform::cases

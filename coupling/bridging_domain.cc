@@ -205,6 +205,14 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
     mesh_mass_(dof) = std::max(mesh_mass_(dof), 0.5 * whole(dof));
 }
 
+bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
+{
+  for (std::size_t k = 0; k < overlap_grains_.size(); ++k)
+    if (grain_inverse_mass_[k] != grains.inverse_mass[overlap_grains_[k]])
+      return false;
+  return true;
+}
+
 void BridgingDomain::factorise(const discrete::Grains &grains,
                                const continuum::Vector &inverse_mass)
 {

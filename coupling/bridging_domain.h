@@ -54,6 +54,9 @@ public:
   /// Build and factorise S = C_D Mi_D C_D^T + C_C Mi_C C_C^T for the inertial masses.
   void factorise(const discrete::Grains &grains, const continuum::Vector &inverse_mass);
 
+  /// Whether the overlap's grains have the masses that S was factorised for.
+  bool is_factorised_for(const discrete::Grains &grains) const;
+
   /// Project half-step velocities onto the constraint: v -= Mi C^T L, S L = C v.
   void project(discrete::Grains &grains, continuum::Vector &velocity);
   /// Impulses of the last project() on a mesh dof, (C_C^T L) [N s]; dofs without

@@ -230,8 +230,7 @@ void ContactSearch::run(const Stage, const Clock &)
   if (!acted_)
     return;
   search_contacts(state_.grains, state_.joints, contacts_);
-  if (on_search_)
-    on_search_();
+  lost_ += on_search_();
 }
 
 GrainGravity::GrainGravity(GrainState &state,

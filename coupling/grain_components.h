@@ -93,12 +93,14 @@ private:
 };
 
 /// Search for pairs that may touch, whenever a grain has used up half the margin.
+/// What follows a search may cost kinetic energy, which it returns: it is booked as
+/// damping.
 class ContactSearch : public Component
 {
 public:
   ContactSearch(GrainState &state,
                 discrete::Contacts &contacts,
-                std::function<void()> on_search)
+                std::function<double()> on_search)
       : state_(state)
       , contacts_(contacts)
       , on_search_(std::move(on_search))
@@ -106,11 +108,17 @@ public:
   }
   void run(Stage stage, const Clock &clock) override;
   bool acted() const override { return acted_; }
+  void add_energies(Energies &energies) const override { energies.damping += lost_; }
+  void visit_state(StateArchive &archive) override
+  {
+    archive.value("search/lost_energy", lost_);
+  }
 
 private:
   GrainState &state_;
   discrete::Contacts &contacts_;
-  std::function<void()> on_search_;
+  std::function<double()> on_search_;
+  double lost_ = 0.; ///< [J]
   bool acted_ = false;
 };
 

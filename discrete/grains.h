@@ -54,4 +54,12 @@ struct Grains
   }
   Vec2 velocity(const std::size_t i) const { return {velocity_x[i], velocity_y[i]}; }
 };
+
+/// Sums of contact stiffness on each grain: translation k_n A + k_s A [N/m] and rotation,
+/// levers included [N m].
+struct StiffnessSums
+{
+  std::vector<double> translation;
+  std::vector<double> rotation;
+};
 } // namespace antiform::discrete

@@ -155,21 +155,77 @@ double kinetic_energy(const Grains &grains, const GrainVelocities &before)
   return energy;
 }
 
+namespace
+{
+struct Inertia
+{
+  double mass, inertia;
+};
+
+Inertia scaled_inertia(const Grains &grains,
+                       const std::size_t i,
+                       const StiffnessSums &sums,
+                       const std::vector<double> &weight,
+                       const double dt0)
+{
+  const double w = weight.empty() ? 1. : weight[i];
+  const double squared = dt0 * dt0;
+  // Half as much again for the spins: the rotation of a grain is then no faster than
+  // its translation, which lengthens the stable step by 15 %.
+  return {w * std::max(grains.mass[i], sums.translation[i] * squared),
+          w * std::max(grains.inertia[i], 1.5 * sums.rotation[i] * squared)};
+}
+
+/// Raise an inertia to @p wanted if it is less, momentum kept: velocities are to be
+/// multiplied by the result.
+double raise(double &inverse, const double wanted)
+{
+  if (inverse * wanted <= 1.)
+    return 1.;
+  const double factor = 1. / (inverse * wanted);
+  inverse = 1. / wanted;
+  return factor;
+}
+} // namespace
+
 void scale_density(Grains &grains,
-                   const std::vector<double> &translation_stiffness,
-                   const std::vector<double> &rotation_stiffness,
+                   const StiffnessSums &sums,
                    const std::vector<double> &weight,
                    const double dt0)
 {
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
-    const double w = weight.empty() ? 1. : weight[i];
-    const double m = std::max(grains.mass[i], translation_stiffness[i] * dt0 * dt0);
-    // Half as much again for the spins: the rotation of a grain is then no faster than
-    // its translation, which lengthens the stable step by 15 %.
-    const double j = std::max(grains.inertia[i], 1.5 * rotation_stiffness[i] * dt0 * dt0);
-    grains.inverse_mass[i] = 1. / (w * m);
-    grains.inverse_inertia[i] = 1. / (w * j);
+    const Inertia scaled = scaled_inertia(grains, i, sums, weight, dt0);
+    grains.inverse_mass[i] = 1. / scaled.mass;
+    grains.inverse_inertia[i] = 1. / scaled.inertia;
   }
+}
+
+double make_heavier(Grains &grains,
+                    const StiffnessSums &sums,
+                    const std::vector<double> &weight,
+                    const double dt0)
+{
+  double lost = 0.;
+  const auto slow = [&lost](double &velocity, const double inertia, const double factor)
+  {
+    lost += 0.5 * inertia * velocity * velocity * (1. - factor);
+    velocity *= factor;
+  };
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const Inertia wanted = scaled_inertia(grains, i, sums, weight, dt0);
+    const double mass = 1. / grains.inverse_mass[i];
+    const double inertia = 1. / grains.inverse_inertia[i];
+    if (const double factor = raise(grains.inverse_mass[i], wanted.mass); factor < 1.)
+    {
+      slow(grains.velocity_x[i], mass, factor);
+      slow(grains.velocity_y[i], mass, factor);
+    }
+    if (const double factor = raise(grains.inverse_inertia[i], wanted.inertia);
+        factor < 1.)
+      slow(grains.spin[i], inertia, factor);
+  }
+  return lost;
 }
 } // namespace antiform::discrete

@@ -79,8 +79,15 @@ double kinetic_energy(const Grains &grains, const GrainVelocities &before);
 /// stiffness sums k, and J* = w max(J, 3/2 k_rot dt0^2). @p weight: mass weights mu
 /// (empty: 1).
 void scale_density(Grains &grains,
-                   const std::vector<double> &translation_stiffness,
-                   const std::vector<double> &rotation_stiffness,
+                   const StiffnessSums &sums,
                    const std::vector<double> &weight,
                    double dt0);
+/// Raise the inertial masses, in the course of a run, to those of scale_density() where
+/// they are less, none is lowered. The momentum of each grain is kept, as when a grain
+/// catches a mass at rest.
+/// \return kinetic energy lost by that [J]
+double make_heavier(Grains &grains,
+                    const StiffnessSums &sums,
+                    const std::vector<double> &weight,
+                    double dt0);
 } // namespace antiform::discrete

@@ -174,13 +174,6 @@ struct JointEnergies
 };
 JointEnergies joint_energies(const Grains &grains, const Joints &joints);
 
-/// Sums of contact stiffness on each grain: translation k_n A + k_s A [N/m] and rotation,
-/// levers included [N m].
-struct StiffnessSums
-{
-  std::vector<double> translation;
-  std::vector<double> rotation;
-};
 /// \param weighted use the bridging weights (stable step), or not (density scaling)
 StiffnessSums stiffness_sums(const Grains &grains, const Joints &joints, bool weighted);
 

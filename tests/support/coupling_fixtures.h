@@ -189,8 +189,7 @@ struct Bridged
   {
     const discrete::StiffnessSums sums =
         discrete::stiffness_sums(state.grains, state.joints, false);
-    discrete::scale_density(state.grains, sums.translation, sums.rotation,
-                            domain->grain_mass_weight(), dt0);
+    discrete::scale_density(state.grains, sums, domain->grain_mass_weight(), dt0);
     mesh->scale_density(domain->mesh_mass(), {}, dt0);
   }
   /// After the last change of masses or supports.

@@ -179,7 +179,7 @@ TEST(StableStep, StaysABoundWithWeightsAndScaledDensity)
       // Half of the grains are heavier than the scaling asks for, half are not.
       const double dt0 = scaled ? 0.01 : 0.;
       const StiffnessSums sums = stiffness_sums(sample.grains, sample.joints, false);
-      scale_density(sample.grains, sums.translation, sums.rotation, mass_weight, dt0);
+      scale_density(sample.grains, sums, mass_weight, dt0);
       EXPECT_LE(stable_step(sample.grains, sample.joints) * highest_mode(sample).omega,
                 2.)
           << seed << scaled;
@@ -198,7 +198,7 @@ TEST(StableStep, IsReachedByDensityScaling)
   for (const double factor : {1., 10., 1000.})
   {
     const double dt0 = factor * natural;
-    scale_density(sample.grains, sums.translation, sums.rotation, {}, dt0);
+    scale_density(sample.grains, sums, {}, dt0);
     const double step = stable_step(sample.grains, sample.joints);
     EXPECT_GE(step, dt0);
     EXPECT_LE(step, 2. * dt0);

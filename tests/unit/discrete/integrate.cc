@@ -53,8 +53,8 @@ TEST(GrainDamping, CombinedFollowsTheChangeOfTheForceToo)
   const auto sign = [](const double v) { return v > 0. ? 1. : v < 0. ? -1. : 0.; };
   const std::vector<double> change{-1., 1., 0.};
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_DOUBLE_EQ(moving.damping.force_x[i], half * std::abs(g.force_x[i]) *
-                                                    (change[i] - sign(g.velocity_x[i])));
+    EXPECT_DOUBLE_EQ(moving.damping.force_x[i],
+                     half * std::abs(g.force_x[i]) * (change[i] - sign(g.velocity_x[i])));
   EXPECT_EQ(moving.damping.before_x, g.force_x);
 }
 
@@ -131,10 +131,32 @@ TEST(DensityScaling, RaisesInertiaOnlyWhereTheStepAsksForIt)
   Grains g;
   g.add({0., 0.}, 0.5, 1., 0);
   g.add({0., 0.}, 0.5, 1., 0);
-  scale_density(g, {1., 1e6}, {1., 1e6}, {0.5, 0.25}, 0.01);
+  scale_density(g, {{1., 1e6}, {1., 1e6}}, {0.5, 0.25}, 0.01);
   EXPECT_DOUBLE_EQ(1. / g.inverse_mass[0], 0.5 * g.mass[0]);
   EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[0], 0.5 * g.inertia[0]);
   EXPECT_DOUBLE_EQ(1. / g.inverse_mass[1], 0.25 * 100.);
   EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[1], 0.25 * 150.); // half as much again
+}
+
+TEST(DensityScaling, InTheCourseOfARunKeepsMomentumAndTellsTheEnergyLost)
+{
+  Grains g;
+  g.add({0., 0.}, 0.5, 1., 0);
+  g.add({0., 0.}, 0.5, 1., 0);
+  scale_density(g, {{2e4, 4e4}, {1e4, 2e4}}, {}, 0.01);
+  g.velocity_x = {3., 5.};
+  g.velocity_y = {-4., 7.};
+  g.spin = {2., -6.};
+  // The first grain carries twice as much now, the second half: it stays as it was.
+  const double lost = make_heavier(g, {{4e4, 2e4}, {2e4, 1e4}}, {}, 0.01);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_mass[0], 4.);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[0], 3.);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_mass[1], 4.);
+  EXPECT_DOUBLE_EQ(1. / g.inverse_inertia[1], 3.);
+  EXPECT_EQ(g.velocity_x, (std::vector<double>{1.5, 5.}));
+  EXPECT_EQ(g.velocity_y, (std::vector<double>{-2., 7.}));
+  EXPECT_EQ(g.spin, (std::vector<double>{1., -6.}));
+  // Half of 1/2 m v^2 = 25 J and of 1/2 J w^2 = 3 J.
+  EXPECT_DOUBLE_EQ(lost, 12.5 + 1.5);
 }
 } // namespace antiform::discrete::test

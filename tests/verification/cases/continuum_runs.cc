@@ -121,3 +121,22 @@ TEST(GrainRun, CountsJointsOverACohesionAlone)
   EXPECT_GT(result(summary_of(folder.path("run")), "unbreakable_joints_over_strength"),
             0.);
 }
+
+TEST(GrainRun, StartsUnderItsPrestress)
+{
+  // At rest under its own weight and a surface pressure the section presses the walls
+  // with the pressure times its height H = 5 h, and half its weight on a square of H.
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_tiny(folder.path("run"),
+               set(unbreakable(
+                   {"Components=layer, matrix, gravity, surface pressure, walls, damping",
+                    "Surface pressure/Pressure=1e6"})));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const CsvTable history(folder.path("run/history.csv"));
+  const double height = 50., density = 0.84 * 2500.;
+  const double wanted = 1e6 * height + 0.5 * density * 9.81 * height * height;
+  // The density of this packing is not exactly 0.84 of the grains'.
+  EXPECT_NEAR(history.column("wall_force_N").front() / wanted, 1., 0.02);
+  EXPECT_LT(history.column("unbalanced_ratio").front(), 1e-6);
+}
