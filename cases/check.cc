@@ -1,6 +1,7 @@
 #include "cases/effects.h"
 #include "cases/geometry.h"
 #include "cases/program.h"
+#include "cases/sizes.h"
 #include "continuum/layer_theory.h"
 
 #include <nlohmann/json.hpp>
@@ -16,53 +17,6 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 namespace theory = continuum::theory;
-
-/// Counts of the scene from its geometry alone; no packing is made.
-struct Sizes
-{
-  double layer_grains = 0., grains = 0., joints = 0., cells = 0., dofs = 0.;
-  double steps = 0., seconds = 0., bytes = 0.;
-};
-
-// Speed of one core, from tests/benchmark and whole runs; predictions hold within a
-// factor of two or so on a machine of the same years.
-constexpr double grain_steps_per_second = 6e6;
-constexpr double dof_steps_per_second = 40e6;
-
-Sizes count(const Parameters &p, const SectionGeometry &g)
-{
-  Sizes sizes;
-  const double d = g.diameter();
-  // Grains per d^2: solid fraction 0.845 over pi/4 <d^2>/<d>^2 (ratio 1.66: 1.02).
-  const double per_area = 0.845 / (0.25 * M_PI * 1.02) / (d * d);
-  const double height = g.surface() - g.base();
-  if (p.layer.representation == "grains")
-    sizes.layer_grains = g.length() * g.thickness() * per_area;
-  sizes.grains = p.estimated_grains();
-  sizes.joints = 2.5 * sizes.grains;
-  const bool mesh = p.layer.representation == "continuum" || p.is_bridged();
-  if (mesh)
-  {
-    const double columns = g.n_columns();
-    const double cell = p.matrix.cell_size * d, largest = p.matrix.largest_cell * d;
-    const double rows =
-        (height - g.thickness()) / std::sqrt(cell * largest) + (p.is_bridged() ? 0. : 3.);
-    sizes.cells = columns * rows;
-    sizes.dofs = 2. * sizes.cells * p.matrix.element_degree * p.matrix.element_degree;
-  }
-  if (p.has("walls") && p.run.driver != "static")
-  {
-    // An axial transit takes about two steps a grain diameter.
-    const double transit = 2. * g.length() / d;
-    const double millistrain =
-        1e3 * (p.run.end_shortening > 0. ? p.run.end_shortening : 2.5e-3);
-    sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
-    sizes.seconds = sizes.steps * (sizes.grains / grain_steps_per_second +
-                                   sizes.dofs / dof_steps_per_second);
-  }
-  sizes.bytes = p.estimated_memory() + 2e3 * sizes.dofs + 120e6;
-  return sizes;
-}
 
 struct Estimate
 {
@@ -129,7 +83,7 @@ std::string state_name(const Effect::State state)
 Json to_json(const Parameters &p)
 {
   const SectionGeometry g(p);
-  const Sizes sizes = count(p, g);
+  const Sizes sizes = predict_sizes(p, g);
   const Estimate e = estimate(p, g);
   Json json;
   json["title"] = p.title;
@@ -153,8 +107,8 @@ Json to_json(const Parameters &p)
                    {"cells", std::llround(sizes.cells)},
                    {"dofs", std::llround(sizes.dofs)}};
   json["prediction"] = {{"steps", std::llround(sizes.steps)},
-                        {"core_seconds", sizes.seconds},
-                        {"memory_bytes", std::llround(sizes.bytes)}};
+                        {"core_seconds", sizes.core_seconds},
+                        {"memory_bytes", std::llround(sizes.memory)}};
   for (const Effect &effect : list_effects(p))
     json["effects"][effect.name] = {{"state", state_name(effect.state)},
                                     {"reason", effect.reason}};
@@ -182,7 +136,7 @@ int check(const Parameters &p, const bool json, std::ostream &out)
     return 0;
   }
   const SectionGeometry g(p);
-  const Sizes sizes = count(p, g);
+  const Sizes sizes = predict_sizes(p, g);
   const Estimate e = estimate(p, g);
   out << p.title << "\n\nScene\n";
   line(out, "  section   %.1f m long, from y = %.1f to %.1f m", g.length(), g.base(),
@@ -228,8 +182,8 @@ int check(const Parameters &p, const bool json, std::ostream &out)
   out << "\nSize and cost (predicted)\n";
   line(out, "  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f dofs",
        sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells, sizes.dofs);
-  line(out, "  about %.2g steps, %.0f core seconds, %.2f GB", sizes.steps, sizes.seconds,
-       1e-9 * sizes.bytes);
+  line(out, "  about %.2g steps, %.0f core seconds, %.2f GB", sizes.steps,
+       sizes.core_seconds, 1e-9 * sizes.memory);
   return 0;
 }
 } // namespace antiform::cases

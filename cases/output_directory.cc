@@ -32,6 +32,31 @@ void prove_writable(const fs::path &directory)
   close(file);
   unlink(name.c_str());
 }
+
+/// What stands where the run will write: a folder for a file, or the reverse.
+void find_obstacles(const fs::path &directory)
+{
+  std::vector<std::string> problems;
+  std::error_code error;
+  const auto refuse = [&](const fs::path &path, const std::string &what)
+  {
+    problems.push_back("output directory '" + directory.string() + "': '" +
+                       path.string() + "' " + what +
+                       ". Move it away, or give another directory with -o DIR.");
+  };
+  for (const char *name : {"deck.prm", "log.txt", "history.csv", "cracks.csv",
+                           "fields.pvd", "state.h5", "summary.json"})
+    if (fs::exists(directory / name, error) &&
+        !fs::is_regular_file(directory / name, error))
+      refuse(name, "is not a file, and the run writes one of that name");
+  if (fs::exists(directory / "fields", error) &&
+      !fs::is_directory(directory / "fields", error))
+    refuse("fields", "is not a folder, and the run writes into one of that name");
+  else if (fs::exists(directory / "fields", error))
+    prove_writable(directory / "fields");
+  if (!problems.empty())
+    throw InputError(problems);
+}
 } // namespace
 
 std::string prepare_output_directory(RunOptions &options)
@@ -60,6 +85,7 @@ std::string prepare_output_directory(RunOptions &options)
                       "': holds another run (state.h5). Continue that run with --resume, "
                       "give another directory with -o DIR, or remove this one."});
   prove_writable(directory);
+  find_obstacles(directory);
 
   if (options.resume && !has_state)
   {

@@ -1,6 +1,7 @@
 // What a scene is made of and what cannot go together in it.
 #include "cases/deck_reader.h"
 #include "cases/declarations.h"
+#include "cases/sizes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,22 @@ void check_layer(const Parameters &p, Findings &findings)
          "the layer would be " + metres(p.layer_length()) + " long and " +
              metres(p.layer.thickness) +
              " thick. Give a length of at least the thickness."});
+  if (p.layer.shape == "cosine")
+  {
+    // Steepest slope of a0/2 cos(2 pi x / L); top and bottom are shifted along y, so the
+    // layer thins with the cosine of its dip.
+    const double per_ratio = M_PI * p.layer.thickness / p.layer_length();
+    const double steepest = std::tan(M_PI / 3.);
+    if (p.layer.amplitude_ratio * per_ratio > steepest)
+      findings.push_back(
+          {{"Layer/Amplitude ratio", "Layer/Length ratio", "Layer/Slenderness ratio"},
+           "the limbs would dip by " +
+               short_text(180. / M_PI * std::atan(p.layer.amplitude_ratio * per_ratio)) +
+               " degrees, and the layer be thinner there by the cosine of that. Give at "
+               "most " +
+               short_text(std::floor(steepest / per_ratio * 100.) / 100.) +
+               " (60 degrees)."});
+  }
 }
 
 void check_matrix(const Parameters &p, Findings &findings)
@@ -120,14 +137,14 @@ void check_matrix(const Parameters &p, Findings &findings)
          "cemented, or 'Layer/Representation' = 'grains'."});
 
   const bool has_grains = m.representation == "grains" || p.is_bridged();
-  if (has_grains && m.poisson_ratio >= 0.25)
+  if (has_grains && (m.poisson_ratio < 0.01 || m.poisson_ratio > 0.235))
     findings.push_back(
         {{"Matrix/Poisson ratio", "Matrix/Representation", "Layer/Representation"},
-         "out of reach of the matrix grains: a packing of disks stays below nu_2D = 1/3, "
-         "which is 0.25 in plane strain. Give a smaller ratio, or 'Layer/Representation' "
-         "= "
-         "'continuum'; a surface interface, which needs no matrix grains, does not exist "
-         "yet."});
+         "out of reach of the matrix grains: packings of disks stay below nu_2D = 1/3, "
+         "which is 0.25 in plane strain, and ours reach 0.01 to 0.235. Give such a "
+         "ratio, "
+         "or 'Layer/Representation' = 'continuum'; a surface interface, which needs no "
+         "matrix grains, does not exist yet."});
   if (has_grains && m.breakable && m.tensile_strength == 0. && m.cohesion == 0.)
     findings.push_back(
         {{"Matrix/Breakable", "Matrix/Tensile strength", "Matrix/Cohesion"},
@@ -219,16 +236,30 @@ void check_memory(const Parameters &p, Findings &findings)
 {
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
                         static_cast<double>(sysconf(_SC_PAGESIZE));
-  if (p.estimated_memory() <= memory)
+  const Sizes sizes = predict_sizes(p, SectionGeometry(p));
+  if (sizes.memory <= memory)
     return;
   constexpr double gib = 1024. * 1024. * 1024.;
-  findings.push_back({{"Layer/Grains across", "Layer/Thickness"},
-                      "about " + short_text(p.estimated_grains()) +
-                          " grains, which need " +
-                          short_text(p.estimated_memory() / gib) +
+  std::string entry = "Layer/Grains across", count = short_text(sizes.grains) + " grains",
+              remedy = "fewer grains across the layer, a shorter layer, or 'continuum' "
+                       "for the matrix";
+  if (sizes.tile_grains > sizes.grains)
+  {
+    entry = "Matrix/Tile size ratio";
+    count = short_text(sizes.tile_grains) + " grains of the matrix tile";
+    remedy = "a smaller tile";
+  }
+  if (sizes.dofs > std::max(sizes.grains, sizes.tile_grains))
+  {
+    entry = "Matrix/Cell size ratio";
+    count = short_text(sizes.cells) + " cells";
+    remedy = "larger cells or a smaller section";
+  }
+  findings.push_back({{entry, "Layer/Thickness"},
+                      "about " + count + ", and the scene needs " +
+                          short_text(sizes.memory / gib) +
                           " GiB of memory; this machine has " + short_text(memory / gib) +
-                          " GiB. Give fewer grains across the layer, a shorter layer, or "
-                          "'continuum' for the matrix."});
+                          " GiB. Give " + remedy + "."});
 }
 } // namespace
 
@@ -243,7 +274,7 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.is_bridged())
     check_bridging(p, findings);
   check_run(p, findings);
-  if (p.has("layer"))
+  if (p.has("layer") && findings.empty()) // else the geometry may not exist
     check_memory(p, findings);
   return findings;
 }
@@ -289,35 +320,5 @@ double Parameters::grain_diameter() const
 double Parameters::matrix_modulus() const
 {
   return layer.young_modulus / matrix.stiffness_contrast;
-}
-
-double Parameters::estimated_grains() const
-{
-  if (layer.representation != "grains")
-    return 0.;
-  const double d = grain_diameter();
-  double height = layer.thickness;
-  if (has("matrix"))
-  {
-    const double cover = matrix.burial_depth_ratio * layer.thickness;
-    const double base = matrix.base_depth_ratio * layer.thickness;
-    const double beside = (bridging.overlap + bridging.buffer) * d;
-    const double bend = layer.shape == "cosine" ? layer.amplitude_ratio : 0.;
-    if (matrix.representation == "grains")
-      height += cover + base + bend * layer.thickness;
-    else
-      height += std::min(cover, beside) + std::min(base, beside);
-  }
-  // Solid fraction 0.84 over the mean area of a disk, pi/4 d^2 (1 + variance of d).
-  constexpr double grains_per_square_diameter = 1.05;
-  return grains_per_square_diameter * height * section_length() / (d * d);
-}
-
-double Parameters::estimated_memory() const
-{
-  // Bytes: 600 a grain, 150 for each of its 2.4 joints; a supernodal factor of the bonded
-  // assembly takes 2.4 GB for a million grains.
-  const double factor = run.driver == "dynamic" ? 0. : 2400.;
-  return estimated_grains() * (600. + 2.4 * 150. + factor);
 }
 } // namespace antiform::cases

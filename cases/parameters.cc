@@ -162,6 +162,12 @@ private:
     for (const DeckLine &line : text_.entries)
     {
       const std::string parent = parent_of(line.path);
+      if (known_.find(line.path) != nullptr && line.place == "--set" && !parent.empty() &&
+          !is_read(section_of(line.path), p))
+        problems_.push_back(set_place(line) + "this scene has no use for '" +
+                            section_of(line.path) +
+                            "', which is read when: " + read_when(section_of(line.path)) +
+                            ". Leave it out, or change the scene.");
       if (known_.find(line.path) != nullptr || inside_unknown(line.path))
         continue;
       if (!parent.empty() && !is_known_section(parent))
@@ -169,6 +175,14 @@ private:
       else if (parent.empty() || is_read(section_of(line.path), p))
         problems_.push_back(set_place(line) + unknown_entry(line.path));
     }
+  }
+
+  static std::string read_when(const std::string &name)
+  {
+    for (const Section &section : all_sections())
+      if (section.name == name)
+        return section.read_when;
+    throw std::logic_error("no section is called " + name);
   }
 
   static std::string set_place(const DeckLine &line)

@@ -153,11 +153,6 @@ struct Parameters
   double section_length() const; ///< straight ends included [m]
   double grain_diameter() const; ///< mean [m]
   double matrix_modulus() const; ///< E0 [Pa]
-
-  /// Grains of layer and matrix, from areas and the usual porosity; within 10 % [-]
-  double estimated_grains() const;
-  /// What those grains, their joints and (quasi-static) their factored stiffness take [B]
-  double estimated_memory() const;
 };
 
 /// Read a deck (with its includes) and the `--set "Section/Entry=value"` overrides.

@@ -1,6 +1,7 @@
 #include "cases/scene.h"
 
 #include "cases/inertia.h"
+#include "cases/mesh_strips.h"
 #include "cases/scene_components.h"
 
 #include "continuum/errors.h"
@@ -48,47 +49,6 @@ continuum::ElasticMaterial matrix_material(const Parameters &p,
   material.density = grains->matrix->bulk_density;
   material.name = "matrix";
   return material;
-}
-
-/// Strips of the mesh from the base up: matrix, layer where it is continuum, cover.
-std::vector<continuum::Strip> mesh_strips(const Parameters &p,
-                                          const SectionGeometry &geometry)
-{
-  const double d = geometry.diameter(), cell = p.matrix.cell_size * d;
-  const double largest = p.matrix.largest_cell * d;
-  const bool layer_is_mesh = p.layer.representation == "continuum";
-  const double uniform = layer_is_mesh ? 0. : p.bridging.overlap * d;
-  const auto core_top = [&geometry](const double x) { return geometry.core_top(x); };
-  const auto core_bottom = [&geometry](const double x)
-  { return geometry.core_bottom(x); };
-  const auto surface = [&geometry](double) { return geometry.surface(); };
-  const auto base = [&geometry](double) { return geometry.base(); };
-
-  std::vector<continuum::Strip> strips;
-  if (geometry.has_matrix())
-  {
-    const double height = geometry.core_bottom(geometry.x_min()) - geometry.base();
-    strips.push_back({base, core_bottom,
-                      continuum::graded_rows(height, cell, uniform, 1.3, largest, true),
-                      0, false});
-  }
-  if (layer_is_mesh)
-  {
-    const int rows =
-        std::max(2, static_cast<int>(std::lround(geometry.thickness() / cell)));
-    continuum::Strip layer{core_bottom, core_top, {}, 1, geometry.has_matrix()};
-    for (int r = 0; r <= rows; ++r)
-      layer.rows.push_back(static_cast<double>(r) / rows);
-    strips.push_back(layer);
-  }
-  if (geometry.has_matrix())
-  {
-    const double height = geometry.surface() - geometry.core_top(0.);
-    strips.push_back({core_top, surface,
-                      continuum::graded_rows(height, cell, uniform, 1.3, largest, false),
-                      0, layer_is_mesh});
-  }
-  return strips;
 }
 
 void build_mesh(Scene &scene, const MPI_Comm communicator)
@@ -146,6 +106,11 @@ void support_mesh(Scene &scene)
 
 } // namespace
 
+MPI_Comm Scene::communicator() const
+{
+  return mesh ? mesh->communicator() : MPI_COMM_SELF;
+}
+
 double Scene::shortening() const
 {
   return wall_motion != nullptr ? wall_motion->closure() / geometry.length() : 0.;
@@ -158,6 +123,9 @@ void Scene::visit_state(coupling::StateArchive &archive)
   if (broken != 0)
     add_breakage_components();
   simulation->visit_state(archive);
+  if (archive.is_loading() && bridging &&
+      !bridging->is_factorised_for(grains->state.grains))
+    bridging->factorise(grains->state.grains, mesh->inverse_mass);
 }
 
 std::unique_ptr<Scene>
@@ -173,6 +141,12 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
     scene->grains.emplace(make_grains(p, scene->geometry, holds, progress));
     if (p.has("walls"))
       scene->walls = make_walls(*scene->grains, scene->geometry);
+    if (p.has("matrix") && p.matrix.interface == "frictionless")
+    {
+      const coupling::GrainState &state = scene->grains->state;
+      scene->contacts = make_contacts(p, *scene->grains, true);
+      discrete::search_contacts(state.grains, state.joints, scene->contacts);
+    }
   }
   else if (p.has("walls"))
   {

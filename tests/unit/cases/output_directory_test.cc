@@ -81,6 +81,18 @@ TEST(OutputDirectory, KeepsResultsThatNoStateGoesWith)
   }
 }
 
+TEST(OutputDirectory, RefusesWhatStandsInTheWayOfItsFiles)
+{
+  const Scratch scratch;
+  scratch.write("run/fields", "a file");
+  const std::string text = refusal_of(options_for(scratch.path("run")));
+  EXPECT_NE(text.find("'fields' is not a folder"), std::string::npos) << text;
+  scratch.write("other/log.txt/inside", "a folder");
+  EXPECT_NE(
+      refusal_of(options_for(scratch.path("other"))).find("'log.txt' is not a file"),
+      std::string::npos);
+}
+
 TEST(OutputDirectory, RefusesWhatCannotBeWrittenTo)
 {
   const Scratch scratch;

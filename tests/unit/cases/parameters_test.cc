@@ -112,7 +112,7 @@ TEST(Parameters, RefusesMoreGrainsThanTheMachineHolds)
                              "set Shape = straight\nset Length ratio = 10\n"
                              "set Grains across = 1e4\nend\n");
   EXPECT_TRUE(tells(problems_of(deck),
-                    {deck + ":5:", "Layer/Grains across", "1.05e+09 grains", "GiB"}));
+                    {deck + ":5:", "Layer/Grains across", "1.055e+09 grains", "GiB"}));
   EXPECT_TRUE(problems_of(deck, {"Layer/Grains across=20"}).empty());
 }
 
@@ -175,8 +175,9 @@ TEST(Parameters, ReadsOnlyTheSectionsOfListedComponents)
   EXPECT_EQ(effective.find("Gravity"), std::string::npos);
   EXPECT_EQ(effective.find("subsection Matrix"), std::string::npos);
   EXPECT_NE(effective.find("subsection Layer"), std::string::npos);
-  EXPECT_TRUE(tells(problems_of(deck, {"Components=layer, walls, damping"}),
-                    {deck + ":6:", "Damping/Nonsense", "Entries here: Form, Coefficient"}));
+  EXPECT_TRUE(
+      tells(problems_of(deck, {"Components=layer, walls, damping"}),
+            {deck + ":6:", "Damping/Nonsense", "Entries here: Form, Coefficient"}));
 }
 
 TEST(Parameters, TheLastSetWinsAndTheCommandLineIsLast)
@@ -339,4 +340,23 @@ TEST(Parameters, PageOfTheDocumentationIsUpToDate)
   const std::string page = read(std::string(ANTIFORM_SOURCE_DIR) + "/docs/parameters.md");
   EXPECT_EQ(page, parameters_markdown())
       << "run: build/antiform parameters --markdown > docs/parameters.md";
+}
+
+TEST(Parameters, WhatIsSetOnTheCommandLineMustBeOfUse)
+{
+  const Scratch scratch;
+  const std::string deck =
+      scratch.write("deck.prm", coupled + "subsection Gravity\n"
+                                          "  set Acceleration = 5\nend\n");
+  EXPECT_NO_THROW(read_deck(deck, {})); // a deck may hold what another scene needs
+  try
+  {
+    read_deck(deck, {"Gravity/Acceleration=5"});
+    FAIL() << "taken, and without effect";
+  }
+  catch (const InputError &error)
+  {
+    EXPECT_TRUE(
+        tells(error.problems(), {"--set", "no use for 'Gravity'", "component gravity"}));
+  }
 }

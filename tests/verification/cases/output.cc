@@ -111,7 +111,8 @@ assert abs(frame.time / results['shortening']['value'] - 1) < 1e-3
 
 TEST_F(OutputOfARun, MakesPictures)
 {
-  const std::string out = directory() + "/pictures"; // where they go unless told otherwise
+  const std::string out =
+      directory() + "/pictures"; // where they go unless told otherwise
   const Outcome outcome =
       run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") + " " + python +
                   ANTIFORM_SOURCE_DIR "/cases/pictures.py " + directory());

@@ -180,7 +180,8 @@ struct Decrement
 {
   double ratio = 0., half_period = 0.;
 };
-Decrement decrement(const double alpha, const bool combined = false, const bool drift = false)
+Decrement
+decrement(const double alpha, const bool combined = false, const bool drift = false)
 {
   Sample pair = bonded_pair(strong_law());
   pair.grains.displacement_x[1] = 1e-4;

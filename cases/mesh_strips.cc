@@ -1,0 +1,47 @@
+#include "cases/mesh_strips.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+std::vector<continuum::Strip> mesh_strips(const Parameters &p,
+                                          const SectionGeometry &geometry)
+{
+  const double d = geometry.diameter(), cell = p.matrix.cell_size * d;
+  const double largest = p.matrix.largest_cell * d;
+  const bool layer_is_mesh = p.layer.representation == "continuum";
+  const double uniform = layer_is_mesh ? 0. : p.bridging.overlap * d;
+  const auto core_top = [&geometry](const double x) { return geometry.core_top(x); };
+  const auto core_bottom = [&geometry](const double x)
+  { return geometry.core_bottom(x); };
+  const auto surface = [&geometry](double) { return geometry.surface(); };
+  const auto base = [&geometry](double) { return geometry.base(); };
+
+  std::vector<continuum::Strip> strips;
+  if (geometry.has_matrix())
+  {
+    const double height = geometry.core_bottom(geometry.x_min()) - geometry.base();
+    strips.push_back({base, core_bottom,
+                      continuum::graded_rows(height, cell, uniform, 1.3, largest, true),
+                      0, false});
+  }
+  if (layer_is_mesh)
+  {
+    const int rows =
+        std::max(2, static_cast<int>(std::lround(geometry.thickness() / cell)));
+    continuum::Strip layer{core_bottom, core_top, {}, 1, geometry.has_matrix()};
+    for (int r = 0; r <= rows; ++r)
+      layer.rows.push_back(static_cast<double>(r) / rows);
+    strips.push_back(layer);
+  }
+  if (geometry.has_matrix())
+  {
+    const double height = geometry.surface() - geometry.core_top(0.);
+    strips.push_back({core_top, surface,
+                      continuum::graded_rows(height, cell, uniform, 1.3, largest, false),
+                      0, layer_is_mesh});
+  }
+  return strips;
+}
+} // namespace antiform::cases

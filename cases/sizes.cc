@@ -1,0 +1,86 @@
+#include "cases/sizes.h"
+
+#include "cases/mesh_strips.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+namespace
+{
+// Speed of one core, from tests/benchmark and whole runs; predictions hold within a
+// factor of two or so on a machine of the same years.
+constexpr double grain_steps_per_second = 6e6;
+constexpr double dof_steps_per_second = 40e6;
+
+// Grains per d^2: solid fraction 0.845 over pi/4 <d^2>/<d>^2 (radius ratio 1.66: 1.02).
+constexpr double grains_per_square_diameter = 0.845 / (0.25 * M_PI * 1.02);
+constexpr double joints_per_grain = 2.5;
+
+double height_of_grains(const Parameters &p, const SectionGeometry &g)
+{
+  if (!p.has("matrix"))
+    return g.thickness();
+  if (p.matrix.representation == "grains")
+    return g.surface() - g.base();
+  const double beside = (p.bridging.overlap + p.bridging.buffer) * g.diameter();
+  return g.thickness() + std::min(p.matrix.burial_depth_ratio * g.thickness(), beside) +
+         std::min(p.matrix.base_depth_ratio * g.thickness(), beside);
+}
+
+double rows_of_cells(const Parameters &p, const SectionGeometry &g)
+{
+  const double cell = p.matrix.cell_size * g.diameter();
+  const double rows_at_most = (g.surface() - g.base()) / cell;
+  if (rows_at_most > 1e5) // beyond any machine: no need to lay them out
+    return rows_at_most;
+  double rows = 0.;
+  for (const continuum::Strip &strip : mesh_strips(p, g))
+    rows += static_cast<double>(strip.rows.size()) - 1.;
+  return rows;
+}
+
+double predict_memory(const Parameters &p, const Sizes &sizes)
+{
+  // Bytes: 600 a grain, 150 a joint; a supernodal factor of the bonded assembly takes
+  // 2.4 GB for a million grains; the mesh needs 2000 a degree of freedom.
+  const double factor = p.run.driver == "dynamic" ? 0. : 2400.;
+  return (sizes.grains + sizes.tile_grains) * (600. + joints_per_grain * 150. + factor) +
+         2e3 * sizes.dofs + 120e6;
+}
+} // namespace
+
+Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
+{
+  Sizes sizes;
+  const double d = g.diameter();
+  if (p.layer.representation == "grains")
+  {
+    const double per_height = grains_per_square_diameter * g.length() / (d * d);
+    sizes.layer_grains = g.thickness() * per_height;
+    sizes.grains = height_of_grains(p, g) * per_height;
+    sizes.joints = joints_per_grain * sizes.grains;
+    if (p.has("matrix"))
+      sizes.tile_grains =
+          grains_per_square_diameter * p.matrix.tile_size * p.matrix.tile_size;
+  }
+  if (p.layer.representation == "continuum" || p.is_bridged())
+  {
+    sizes.cells = g.n_columns() * rows_of_cells(p, g);
+    sizes.dofs = 2. * sizes.cells * p.matrix.element_degree * p.matrix.element_degree;
+  }
+  if (p.has("walls") && p.run.driver != "static")
+  {
+    // An axial transit takes about two steps a grain diameter.
+    const double transit = 2. * g.length() / d;
+    const double millistrain =
+        1e3 * (p.run.end_shortening > 0. ? p.run.end_shortening : 2.5e-3);
+    sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
+    sizes.core_seconds = sizes.steps * (sizes.grains / grain_steps_per_second +
+                                        sizes.dofs / dof_steps_per_second);
+  }
+  sizes.memory = predict_memory(p, sizes);
+  return sizes;
+}
+} // namespace antiform::cases
