@@ -212,6 +212,7 @@ GrainSection make_grains(const Parameters &p,
 {
   GrainSection section;
   section.modulus.push_back(p.layer.joint.effective_modulus);
+  section.mean_radius = 0.5 * p.grain_diameter();
   std::vector<Placed> placed;
   progress("packing the layer");
   const Packing layer =
@@ -256,18 +257,36 @@ GrainSection make_grains(const Parameters &p,
   return section;
 }
 
-std::vector<Wall> make_walls(const GrainSection &section, const SectionGeometry &geometry)
+namespace
 {
+/// Two walls that face each other.
+std::vector<Wall>
+wall_pair(const GrainSection &section, const Vec2 &one, const Vec2 &other)
+{
+  const Vec2 normal = (1. / norm(other - one)) * (other - one);
   std::vector<Wall> walls(2);
-  walls[0].point = {geometry.x_min(), 0.};
-  walls[0].normal = {1., 0.};
-  walls[1].point = {geometry.x_max(), 0.};
-  walls[1].normal = {-1., 0.};
+  walls[0].point = one;
+  walls[0].normal = normal;
+  walls[1].point = other;
+  walls[1].normal = -normal;
   // The first row of grains, cut or not, stands at the wall stress-free.
-  const double d = geometry.diameter();
+  const double d = 2. * section.mean_radius;
   for (Wall &wall : walls)
     install_wall_contacts(section.state.grains, wall, d, 0.3 * d, section.modulus);
   return walls;
+}
+} // namespace
+
+std::vector<Wall> make_walls(const GrainSection &section, const SectionGeometry &geometry)
+{
+  return wall_pair(section, {geometry.x_min(), 0.}, {geometry.x_max(), 0.});
+}
+
+std::vector<Wall> make_side_walls(const GrainSection &section,
+                                  const SectionGeometry &geometry)
+{
+  const double half = 0.5 * geometry.thickness();
+  return wall_pair(section, {0., -half}, {0., half});
 }
 
 Contacts

@@ -42,6 +42,7 @@ struct GrainSection
   std::vector<int> tile_grain;    ///< grain of the tile that a matrix grain copies; -1
   std::vector<double> modulus;    ///< E* by region [Pa]
   double installation_gap = 0.;   ///< [m]
+  double mean_radius = 0.;        ///< asked for [m]
   std::size_t removed_grains = 0; ///< matrix grains without a path to the rest
 };
 
@@ -62,6 +63,10 @@ GrainSection make_grains(const Parameters &parameters,
 /// End walls at both sides, stress-free where grains stand.
 std::vector<discrete::Wall> make_walls(const GrainSection &section,
                                        const SectionGeometry &geometry);
+
+/// Walls along the sides of a specimen, likewise.
+std::vector<discrete::Wall> make_side_walls(const GrainSection &section,
+                                            const SectionGeometry &geometry);
 
 /// Laws and margin of linear contacts: @p interface_only before anything has broken.
 discrete::Contacts make_contacts(const Parameters &parameters,

@@ -35,9 +35,10 @@ StiffnessSums grain_stiffness(const Scene &scene)
 {
   const coupling::GrainState &state = scene.grains->state;
   StiffnessSums sums = discrete::stiffness_sums(state.grains, state.joints, false);
-  for (const discrete::Wall &wall : scene.walls)
-    for (const discrete::WallContact &contact : wall.contacts)
-      sums.translation[contact.grain] += contact.stiffness;
+  for (const std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
+    for (const discrete::Wall &wall : *walls)
+      for (const discrete::WallContact &contact : wall.contacts)
+        sums.translation[contact.grain] += contact.stiffness;
   add_contact_stiffness(scene, sums);
   return sums;
 }
@@ -84,9 +85,10 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
                         std::vector<double>(grains.size(), 0.)};
     add_contact_stiffness(scene, loose);
     std::vector<double> &extra = loose.translation; // an interface without friction
-    for (const discrete::Wall &wall : scene.walls)
-      for (const discrete::WallContact &contact : wall.contacts)
-        extra[contact.grain] += contact.stiffness * contact.weight;
+    for (const std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
+      for (const discrete::Wall &wall : *walls)
+        for (const discrete::WallContact &contact : wall.contacts)
+          extra[contact.grain] += contact.stiffness * contact.weight;
     step = discrete::stable_step(grains, scene.grains->state.joints, extra);
   }
   if (scene.mesh)

@@ -58,6 +58,34 @@ void check_components(const Parameters &p, Findings &findings)
     find("nothing loads the scene. Add walls, gravity or surface pressure.");
 }
 
+/// Grips and servo walls are for specimens of the laboratory.
+void check_specimen(const Parameters &p, Findings &findings)
+{
+  const std::string specimen = "a straight layer of grains without matrix. Give "
+                               "'Layer/Shape' = 'straight', 'Layer/Representation' = "
+                               "'grains' and no matrix in 'Components'";
+  const bool pulls = p.has("walls") && p.walls.action == "pull";
+  if (p.has("servo walls") && (!p.is_specimen() || !p.has("walls")))
+    findings.push_back(
+        {{"Components"},
+         "servo walls confine a specimen between walls, " + specimen + ", and walls."});
+  if (pulls && !p.is_specimen())
+    findings.push_back(
+        {{"Walls/Action", "Components"}, "grips pull a specimen, " + specimen + "."});
+  if (pulls && p.has("servo walls"))
+    findings.push_back({{"Walls/Action", "Components"},
+                        "servo walls press a specimen that platens shorten. Give press, "
+                        "or remove servo walls from 'Components'."});
+  const double free_length =
+      p.layer_length() / p.grain_diameter() - 2. * p.walls.grip_layers;
+  if (pulls && p.is_specimen() && free_length < 5.)
+    findings.push_back(
+        {{"Walls/Grip layers", "Layer/Length ratio", "Layer/Grains across"},
+         "between the grips " + short_text(free_length) +
+             " grain diameters are left. Give narrower grips or a longer specimen: at "
+             "least 5."});
+}
+
 void check_strengths(const std::string &section,
                      const double tensile_strength,
                      const double cohesion,
@@ -268,7 +296,10 @@ std::vector<Finding> check_parameters(const Parameters &p)
   Findings findings;
   check_components(p, findings);
   if (p.has("layer"))
+  {
     check_layer(p, findings);
+    check_specimen(p, findings);
+  }
   if (p.has("layer") && p.has("matrix"))
     check_matrix(p, findings);
   if (p.is_bridged())
@@ -288,6 +319,12 @@ LayerParameters::LayerParameters()
 bool Parameters::has(const std::string &component) const
 {
   return std::find(components.begin(), components.end(), component) != components.end();
+}
+
+bool Parameters::is_specimen() const
+{
+  return has("layer") && !has("matrix") && layer.representation == "grains" &&
+         layer.shape == "straight";
 }
 
 bool Parameters::is_bridged() const

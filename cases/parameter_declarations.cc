@@ -225,6 +225,31 @@ void declare(WallsParameters &walls, Declarations &entries)
       Number::above(0.));
   entries.number("Ramp", walls.ramp, "Transits in which the walls come up to speed [-].",
                  Number::at_least(0.));
+  entries.choice(
+      "Action", walls.action,
+      "press: rigid frictionless platens shorten the section; pull: the grains "
+      "of its ends are gripped, do not turn, and are moved apart.",
+      "press|pull");
+  entries.number("Grip layers", walls.grip_layers,
+                 "Width of each grip over the mean grain diameter (pull) [-].",
+                 Number::above(0.));
+  entries.leave();
+}
+
+void declare(ServoWallsParameters &servo, Declarations &entries)
+{
+  entries.enter("Servo walls");
+  entries.number("Pressure", servo.pressure,
+                 "Confinement that rigid frictionless walls keep on the sides of a "
+                 "specimen; it comes up on all four sides before shortening begins [Pa].",
+                 Number::above(0.));
+  entries.number("Gain", servo.gain,
+                 "beta, share of the error in the pressure that a step takes away [-].",
+                 Number::above(0.).below(1.));
+  entries.number("Ramp", servo.ramp,
+                 "Axial transits in which the pressure comes up; as many follow at rest "
+                 "[-].",
+                 Number::above(0.));
   entries.leave();
 }
 
@@ -254,12 +279,17 @@ void declare(RunParameters &run, Declarations &entries)
   entries.number("Step safety", run.safety, "Step over the rigorous stable step [-].",
                  Number::above(0.).below(1.));
   entries.number("End shortening", run.end_shortening,
-                 "Shortening at which the run ends; 0: after the peak, as the next entry "
-                 "says [-].",
+                 "Shortening at which the run ends; 0: after the peak, as the next two "
+                 "entries say [-].",
                  Number::at_least(0.).below(1.));
   entries.number("Strain multiple of peak", run.strain_multiple_of_peak,
                  "The run ends at this multiple of the shortening at the peak [-].",
                  Number::above(1.));
+  entries.number(
+      "Stress ratio of peak", run.stress_ratio_of_peak,
+      "The run ends once the axial stress has fallen for good below this share "
+      "of its peak; 0: it goes on [-].",
+      Number::at_least(0.).below(1.));
   entries.number("Longest shortening", run.longest_shortening,
                  "The run ends here at the latest, peak or not [-].",
                  Number::above(0.).below(1.));
@@ -298,7 +328,8 @@ void declare_one(const std::string &name,
 const std::vector<std::string> &all_components()
 {
   static const std::vector<std::string> names = {
-      "layer", "matrix", "foundation", "surface pressure", "gravity", "walls", "damping"};
+      "layer",   "matrix", "foundation",  "surface pressure",
+      "gravity", "walls",  "servo walls", "damping"};
   return names;
 }
 
@@ -312,6 +343,7 @@ const std::vector<Section> &all_sections()
       {"Surface pressure", "component surface pressure"},
       {"Gravity", "component gravity"},
       {"Walls", "component walls"},
+      {"Servo walls", "component servo walls"},
       {"Damping", "component damping"},
       {"Run", "always"},
       {"Output", "always"}};
@@ -334,9 +366,10 @@ void declare_parameters(Parameters &p,
                         Declarations &entries)
 {
   entries.text("Title", p.title, "What the run is called in its output.");
-  entries.list("Components", p.components,
-               "What exists in the scene, a list: layer, matrix, foundation, surface "
-               "pressure, gravity, walls, damping. Only their sections are read.");
+  entries.list(
+      "Components", p.components,
+      "What exists in the scene, a list: layer, matrix, foundation, surface "
+      "pressure, gravity, walls, servo walls, damping. Only their sections are read.");
   for (const std::string &section : sections)
   {
     if (section == "Layer")
@@ -356,6 +389,8 @@ void declare_parameters(Parameters &p,
                   Number::above(0.), entries);
     else if (section == "Walls")
       declare(p.walls, entries);
+    else if (section == "Servo walls")
+      declare(p.servo_walls, entries);
     else if (section == "Damping")
       declare(p.damping, entries);
     else if (section == "Run")

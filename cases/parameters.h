@@ -102,7 +102,17 @@ struct GravityParameters
 struct WallsParameters
 {
   double transits_per_millistrain = 300.; ///< axial wave transits of the layer per 1e-3
-  double ramp = 20.; ///< transits over which the walls come up to speed
+  double ramp = 20.;            ///< transits over which the walls come up to speed
+  std::string action = "press"; ///< press | pull (by grips)
+  double grip_layers = 7.5;     ///< width of a grip over the mean grain diameter
+};
+
+/// Walls along the sides of a specimen that keep a pressure on it.
+struct ServoWallsParameters
+{
+  double pressure = 10e6; ///< [Pa]
+  double gain = 0.5;      ///< beta: share of the error that one step takes away
+  double ramp = 100.;     ///< transits over which the pressure comes up on all sides
 };
 
 struct DampingParameters
@@ -118,8 +128,10 @@ struct RunParameters
   double safety = 0.8;                 ///< step over the rigorous stable step
   double end_shortening = 0.;          ///< 0: by the peak
   double strain_multiple_of_peak = 2.; ///< end at this multiple of the strain at the peak
-  double longest_shortening = 0.02;    ///< give up here [-]
-  int load_steps = 10;                 ///< static driver
+  double stress_ratio_of_peak =
+      0.; ///< end when the stress has fallen to this share of it
+  double longest_shortening = 0.02; ///< give up here [-]
+  int load_steps = 10;              ///< static driver
 };
 
 struct OutputParameters
@@ -140,11 +152,14 @@ struct Parameters
   SurfacePressureParameters surface_pressure;
   GravityParameters gravity;
   WallsParameters walls;
+  ServoWallsParameters servo_walls;
   DampingParameters damping;
   RunParameters run;
   OutputParameters output;
 
   bool has(const std::string &component) const;
+  /// Nothing but a straight layer of grains: a specimen of the laboratory.
+  bool is_specimen() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
   bool is_bridged() const;
 

@@ -37,6 +37,9 @@ const std::vector<std::string> history_columns{"step",
 
 // A peak counts when the curve has stayed below it over so much shortening.
 constexpr double settled = 2e-4;
+// The stress has fallen for good when it has stayed down over so much, two axial transits
+// at the usual speeds.
+constexpr double fallen = 2e-5;
 } // namespace
 
 Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
@@ -48,13 +51,24 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
   if (per_step > 0.)
     sample_interval_ = std::max<std::int64_t>(
         1, std::llround(1e-3 / (p.output.samples_per_millistrain * per_step)));
+  if (scene.parameters.is_specimen())
+    specimen_.emplace(scene);
   if (!resumed && writes_tables())
   {
-    history_.emplace(directory_ + "/history.csv", history_columns);
+    history_.emplace(directory_ + "/history.csv", columns());
     if (scene.grains)
       crack_table_.emplace(directory_ + "/cracks.csv");
   }
   find_surface();
+}
+
+std::vector<std::string> Recorder::columns() const
+{
+  std::vector<std::string> names = history_columns;
+  if (specimen_)
+    names.insert(names.end(), SpecimenRecord::columns().begin(),
+                 SpecimenRecord::columns().end());
+  return names;
 }
 
 bool Recorder::writes_tables() const
@@ -157,6 +171,15 @@ Recorder::Sample Recorder::measure() const
     sample.axial_stress = layer / g.thickness();
     sample.matrix_share = sample.wall_force != 0. ? matrix / sample.wall_force : 0.;
   }
+  if (scene_.grips != nullptr)
+  {
+    sample.wall_force = -scene_.grips->tension();
+    sample.axial_stress = sample.wall_force / g.thickness();
+  }
+  sample.strain = scene_.loading_sign() * sample.shortening;
+  sample.stress = scene_.loading_sign() * sample.axial_stress;
+  if (specimen_)
+    sample.gauges = specimen_->measure(scene_);
   // Crest over the two troughs, each a window of one cell of a fortieth of the wave.
   const double half_width = window();
   const double trough = std::min(0.5 * g.wavelength(), 0.5 * g.length() - half_width);
@@ -198,19 +221,24 @@ void Recorder::run(const Stage, const Clock &clock)
   close_ledger(energies_);
   append_cracks();
   append_history(clock, sample);
-  strain_.push_back(sample.shortening);
-  stress_.push_back(sample.axial_stress);
-  total_.push_back(sample.wall_force);
-  if (sample.axial_stress > peak_stress_)
+  strain_.push_back(sample.strain);
+  stress_.push_back(sample.stress);
+  total_.push_back(scene_.loading_sign() * sample.wall_force);
+  cracks_.push_back(static_cast<double>(n_tensile_ + n_shear_));
+  if (specimen_)
+    specimen_->keep(scene_, sample.gauges, sample.stress);
+  if (sample.stress > peak_stress_)
   {
-    peak_stress_ = sample.axial_stress;
-    peak_strain_ = sample.shortening;
+    peak_stress_ = sample.stress;
+    peak_strain_ = sample.strain;
     peak_share_ = sample.matrix_share;
   }
+  if (sample.stress >= scene_.parameters.run.stress_ratio_of_peak * peak_stress_)
+    last_high_strain_ = sample.strain;
   last_ = sample;
   if (scene_.mesh)
     mesh_watch_.look(*scene_.solid, scene_.mesh->displacement, clock.step);
-  if (sample.shortening >= next_field_)
+  if (sample.strain >= next_field_)
   {
     write_fields();
     next_field_ += scene_.parameters.output.fields_interval;
@@ -231,27 +259,30 @@ void Recorder::append_history(const Clock &clock, const Sample &sample)
                          ? scene_.bridging->displacement_gap(scene_.grains->state.grains,
                                                              scene_.mesh->displacement)
                          : 0.;
-  if (history_)
-    history_->append(std::vector<double>{static_cast<double>(clock.step),
-                                         clock.time,
-                                         sample.shortening,
-                                         sample.axial_stress,
-                                         sample.wall_force,
-                                         sample.matrix_share,
-                                         static_cast<double>(n_tensile_),
-                                         static_cast<double>(n_shear_),
-                                         sample.fold_amplitude,
-                                         sample.limb_dip,
-                                         ratio_,
-                                         gap,
-                                         sample.surface_uplift,
-                                         energies_.boundary_work,
-                                         energies_.kinetic,
-                                         energies_.strain_grains,
-                                         energies_.strain_continuum,
-                                         energies_.slip,
-                                         energies_.damping,
-                                         energies_.fracture});
+  if (!history_)
+    return;
+  std::vector<double> values{static_cast<double>(clock.step),
+                             clock.time,
+                             sample.shortening,
+                             sample.axial_stress,
+                             sample.wall_force,
+                             sample.matrix_share,
+                             static_cast<double>(n_tensile_),
+                             static_cast<double>(n_shear_),
+                             sample.fold_amplitude,
+                             sample.limb_dip,
+                             ratio_,
+                             gap,
+                             sample.surface_uplift,
+                             energies_.boundary_work,
+                             energies_.kinetic,
+                             energies_.strain_grains,
+                             energies_.strain_continuum,
+                             energies_.slip,
+                             energies_.damping,
+                             energies_.fracture};
+  values.insert(values.end(), sample.gauges.begin(), sample.gauges.end());
+  history_->append(values);
 }
 
 void Recorder::append_cracks()
@@ -277,15 +308,17 @@ void Recorder::look_for_end(const Sample &sample)
   const RunParameters &run = scene_.parameters.run;
   if (run.end_shortening > 0.)
   {
-    if (sample.shortening >= run.end_shortening)
+    if (sample.strain >= run.end_shortening)
       why_finished_ = "the shortening asked for";
     return;
   }
-  const double below = sample.shortening - peak_strain_;
+  if (run.stress_ratio_of_peak > 0. && sample.strain - last_high_strain_ >= fallen)
+    why_finished_ = "the wanted share of the peak stress";
+  const double below = sample.strain - peak_strain_;
   const bool peaked = peak_strain_ > 0. && below >= settled;
-  if (peaked && sample.shortening >= run.strain_multiple_of_peak * peak_strain_)
+  if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
-  else if (sample.shortening >= run.longest_shortening)
+  else if (sample.strain >= run.longest_shortening)
     why_finished_ =
         std::string("the longest shortening") + (peaked ? "" : ", without a peak");
 }
@@ -294,10 +327,10 @@ double Recorder::share_done() const
 {
   const RunParameters &run = scene_.parameters.run;
   if (run.end_shortening > 0.)
-    return last_.shortening / run.end_shortening;
-  if (peak_strain_ > 0. && last_.shortening - peak_strain_ >= 0.25 * settled)
-    return std::min(1., last_.shortening / (run.strain_multiple_of_peak * peak_strain_));
-  return last_.shortening / run.longest_shortening;
+    return last_.strain / run.end_shortening;
+  if (peak_strain_ > 0. && last_.strain - peak_strain_ >= 0.25 * settled)
+    return std::min(1., last_.strain / (run.strain_multiple_of_peak * peak_strain_));
+  return last_.strain / run.longest_shortening;
 }
 
 void Recorder::write_fields()
@@ -329,19 +362,37 @@ double Recorder::section_stiffness() const
   return n >= 2. ? (n * xy - x * y) / (n * xx - x * x) / height : 0.;
 }
 
+double Recorder::crack_initiation_stress() const
+{
+  // Cracks begin when there are 1 % of those at the peak.
+  const auto peak = std::find(stress_.begin(), stress_.end(), peak_stress_);
+  if (peak == stress_.end())
+    return 0.;
+  const double wanted = std::max(1., 0.01 * cracks_[peak - stress_.begin()]);
+  const auto begin = std::find_if(cracks_.begin(), cracks_.end(),
+                                  [&](const double n) { return n >= wanted; });
+  return begin == cracks_.end() ? 0. : stress_[begin - cracks_.begin()];
+}
+
 void Recorder::fill(Summary &summary) const
 {
   const SectionGeometry &g = scene_.geometry;
   auto &results = summary.results;
   results["shortening"] = {last_.shortening, "-"};
-  results["peak_stress"] = {peak_stress_, "Pa"};
+  results[scene_.grips != nullptr ? "tensile_strength" : "peak_stress"] = {peak_stress_,
+                                                                           "Pa"};
   results["strain_at_peak"] = {peak_strain_, "-"};
-  results["section_stiffness"] = {section_stiffness(), "Pa"};
-  results["matrix_share_at_peak"] = {peak_share_, "-"};
-  results["fold_amplitude"] = {last_.fold_amplitude, "m"};
-  results["limb_dip"] = {last_.limb_dip, "deg"};
-  results["surface_uplift"] = {last_.surface_uplift, "m"};
   results["unbalanced_ratio"] = {ratio_, "-"};
+  if (specimen_)
+    specimen_->fill(scene_, peak_stress_, summary);
+  else
+  {
+    results["section_stiffness"] = {section_stiffness(), "Pa"};
+    results["matrix_share_at_peak"] = {peak_share_, "-"};
+    results["fold_amplitude"] = {last_.fold_amplitude, "m"};
+    results["limb_dip"] = {last_.limb_dip, "deg"};
+    results["surface_uplift"] = {last_.surface_uplift, "m"};
+  }
   if (scene_.grains)
   {
     const auto &cracks = scene_.grains->state.cracks;
@@ -357,7 +408,8 @@ void Recorder::fill(Summary &summary) const
     if (!cracks.empty())
     {
       const Vec2 place = cracks.front().reference_place;
-      results["crack_initiation_stress"] = {first_crack_stress_, "Pa"};
+      results["first_crack_stress"] = {first_crack_stress_, "Pa"};
+      results["crack_initiation_stress"] = {crack_initiation_stress(), "Pa"};
       results["first_crack_x"] = {place.x, "m"};
       results["first_crack_above_axis"] = {place.y - g.axis(place.x), "m"};
       results["first_crack_is_tensile"] = {
@@ -385,6 +437,9 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   archive.array("recorder/strain", strain_);
   archive.array("recorder/stress", stress_);
   archive.array("recorder/total", total_);
+  archive.array("recorder/cracks", cracks_);
+  if (specimen_)
+    specimen_->visit_state(archive);
   archive.array("recorder/field_shortening", field_shortening_);
   std::vector<std::int64_t> integers{n_tensile_, n_shear_, 0, 0};
   if (!archive.is_loading())
@@ -397,6 +452,7 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   n_shear_ = integers[1];
   std::vector<double *> members{&peak_stress_,
                                 &peak_strain_,
+                                &last_high_strain_,
                                 &peak_share_,
                                 &first_crack_strain_,
                                 &first_crack_stress_,
@@ -408,6 +464,8 @@ void Recorder::visit_state(coupling::StateArchive &archive)
                                 &mesh_watch_.largest_strain,
                                 &ratio_,
                                 &last_.shortening,
+                                &last_.strain,
+                                &last_.stress,
                                 &last_.axial_stress,
                                 &last_.wall_force,
                                 &last_.matrix_share,
@@ -430,7 +488,7 @@ void Recorder::visit_state(coupling::StateArchive &archive)
   if (!writes_tables())
     return;
   history_.emplace(
-      coupling::Table::reopen(directory_ + "/history.csv", history_columns, integers[2]));
+      coupling::Table::reopen(directory_ + "/history.csv", columns(), integers[2]));
   if (scene_.grains)
   {
     crack_table_.emplace(directory_ + "/cracks.csv", integers[3]);

@@ -2,6 +2,7 @@
 
 #include "cases/scene.h"
 #include "cases/small_strain.h"
+#include "cases/specimen.h"
 #include "cases/summary.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
@@ -48,6 +49,8 @@ private:
   {
     double shortening = 0., axial_stress = 0., wall_force = 0., matrix_share = 0.;
     double fold_amplitude = 0., limb_dip = 0., surface_uplift = 0.;
+    double strain = 0., stress = 0.; ///< in the direction of loading: they grow
+    std::vector<double> gauges;      ///< of a specimen
   };
   Sample measure() const;
   bool writes_tables() const; ///< the first rank does
@@ -62,6 +65,8 @@ private:
   void look_for_end(const Sample &sample);
   void write_grain_fields(const std::string &number, double shortening);
   double section_stiffness() const;
+  double crack_initiation_stress() const;
+  std::vector<std::string> columns() const;
 
   Scene &scene_;
   std::string directory_;
@@ -73,9 +78,11 @@ private:
   std::optional<coupling::CrackTable> crack_table_;
 
   // State.
-  std::vector<double> strain_, stress_,
-      total_; ///< samples: shortening, axial stress, force
+  /// Samples, in the direction of loading: strain, stress and force; cracks so far.
+  std::vector<double> strain_, stress_, total_, cracks_;
+  std::optional<SpecimenRecord> specimen_;
   double peak_stress_ = 0., peak_strain_ = 0., peak_share_ = 0.;
+  double last_high_strain_ = 0.; ///< the stress was above the share that ends the run
   double first_crack_strain_ = 0., first_crack_stress_ = 0.;
   std::int64_t n_tensile_ = 0, n_shear_ = 0;
   double next_field_ = 0.;

@@ -113,6 +113,9 @@ MPI_Comm Scene::communicator() const
 
 double Scene::shortening() const
 {
+  if (grips != nullptr)
+    return -grips->extension() /
+           (geometry.length() - 2. * parameters.walls.grip_layers * geometry.diameter());
   return wall_motion != nullptr ? wall_motion->closure() / geometry.length() : 0.;
 }
 
@@ -139,8 +142,10 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
   {
     const auto holds = [&](const Vec2 &x) { return !bridged || weight.holds_grains(x); };
     scene->grains.emplace(make_grains(p, scene->geometry, holds, progress));
-    if (p.has("walls"))
+    if (p.has("walls") && p.walls.action == "press")
       scene->walls = make_walls(*scene->grains, scene->geometry);
+    if (p.has("servo walls"))
+      scene->side_walls = make_side_walls(*scene->grains, scene->geometry);
     if (p.has("matrix") && p.matrix.interface == "frictionless")
     {
       const coupling::GrainState &state = scene->grains->state;
@@ -151,6 +156,7 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
   else if (p.has("walls"))
   {
     GrainSection none;
+    none.mean_radius = 0.5 * p.grain_diameter();
     scene->walls = make_walls(none, scene->geometry);
   }
 

@@ -10,6 +10,7 @@
 #include "coupling/joining_components.h"
 #include "coupling/mesh_components.h"
 #include "coupling/simulation.h"
+#include "coupling/specimen_components.h"
 
 #include <mpi.h>
 
@@ -43,7 +44,12 @@ struct Scene
   std::vector<double> mass_weight; ///< mu of each grain; empty: 1
 
   std::unique_ptr<coupling::Simulation> simulation;
+  std::vector<discrete::Wall> side_walls; ///< of a confined specimen
+
+  // What loads the ends, one of them or none.
   coupling::Walls *wall_motion = nullptr;
+  coupling::Grips *grips = nullptr;
+
   coupling::ConstrainedForces *constrained = nullptr;
   bool breakage_components = false; ///< friction, contacts and search have joined
 
@@ -51,7 +57,11 @@ struct Scene
   double transit_time = 0.;    ///< of an axial wave along the layer [s]
   double shortening_rate = 0.; ///< at full speed [1/s]
 
-  double shortening() const; ///< closure over the section's length [-]
+  /// Closure over the section's length, or minus the extension over the length between
+  /// the grips [-].
+  double shortening() const;
+  /// 1 where the section is shortened, -1 where it is extended: what grows.
+  double loading_sign() const { return grips != nullptr ? -1. : 1.; }
   MPI_Comm communicator() const;
   /// Friction, contacts and search, which the first broken bond calls for.
   void add_breakage_components();

@@ -130,6 +130,79 @@ void add_loads(Scene &scene)
   add(std::make_unique<GrainLoads>(state, installed.grain_loads, true), "prestress");
 }
 
+namespace
+{
+/// 0 to 1 within @p ramp, without a jump of the acceleration.
+double ramp_up(const double t, const double ramp)
+{
+  return t >= ramp ? 1. : 0.5 * (1. - std::cos(M_PI * t / ramp));
+}
+
+/// Side walls, and until the pressure is on the platens too, follow it.
+void add_servo_walls(Scene &scene, const double fastest)
+{
+  const ServoWallsParameters &servo = scene.parameters.servo_walls;
+  const double ramp = servo.ramp * scene.transit_time;
+  const auto speed_on = [servo, ramp, fastest](const double area)
+  {
+    return [servo, ramp, fastest, area](const discrete::Wall &wall, const Clock &clock)
+    {
+      return servo_speed(wall, area, servo.pressure * ramp_up(clock.time, ramp),
+                         servo.gain, fastest, clock.dt);
+    };
+  };
+  scene.wall_motion->preload({2. * ramp, speed_on(scene.geometry.thickness())});
+  scene.simulation->add(std::make_unique<ServoWalls>(scene.side_walls,
+                                                     scene.grains->state,
+                                                     speed_on(scene.geometry.length())),
+                        {Stage::forces, Stage::drift}, rank_walls, "servo walls",
+                        reason_for(scene.parameters, "servo walls"));
+}
+
+std::array<std::vector<std::int32_t>, 2> gripped_grains(const Scene &scene)
+{
+  const discrete::Grains &grains = scene.grains->state.grains;
+  const SectionGeometry &g = scene.geometry;
+  const double width = scene.parameters.walls.grip_layers * g.diameter();
+  std::array<std::vector<std::int32_t>, 2> held;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (grains.reference_x[i] < g.x_min() + width)
+      held[0].push_back(static_cast<std::int32_t>(i));
+    else if (grains.reference_x[i] > g.x_max() - width)
+      held[1].push_back(static_cast<std::int32_t>(i));
+  return held;
+}
+
+void add_walls(Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  scene.transit_time = layer_transit(scene);
+  scene.shortening_rate = 1e-3 / (p.walls.transits_per_millistrain * scene.transit_time);
+  const bool pulls = p.walls.action == "pull";
+  const double length =
+      scene.geometry.length() -
+      (pulls ? 2. * p.walls.grip_layers * scene.geometry.diameter() : 0.);
+  const double full = 0.5 * scene.shortening_rate * length;
+  const double ramp = p.walls.ramp * scene.transit_time;
+  const auto speed = [full, ramp](const double t) { return full * ramp_up(t, ramp); };
+  const std::string reason = reason_for(p, "walls");
+  GrainState *const grains = scene.grains ? &scene.grains->state : nullptr;
+  if (pulls)
+  {
+    scene.grips = &scene.simulation->add(
+        std::make_unique<Grips>(*grains, gripped_grains(scene), speed),
+        {Stage::forces, Stage::drift}, rank_base, "walls", reason);
+    return;
+  }
+  scene.wall_motion = &scene.simulation->add(
+      std::make_unique<Walls>(scene.walls, grains, scene.mesh ? &*scene.mesh : nullptr,
+                              scene.bridging.get(), speed),
+      {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls", reason);
+  if (p.has("servo walls"))
+    add_servo_walls(scene, 20. * full);
+}
+} // namespace
+
 void add_common_components(Scene &scene)
 {
   const Parameters &p = scene.parameters;
@@ -154,19 +227,7 @@ void add_common_components(Scene &scene)
     mesh_damping = damping.mesh_forces();
   }
   if (p.has("walls"))
-  {
-    scene.transit_time = layer_transit(scene);
-    scene.shortening_rate =
-        1e-3 / (p.walls.transits_per_millistrain * scene.transit_time);
-    const double full = 0.5 * scene.shortening_rate * scene.geometry.length();
-    const double ramp = p.walls.ramp * scene.transit_time;
-    const auto speed = [full, ramp](const double t)
-    { return t >= ramp ? full : full * 0.5 * (1. - std::cos(M_PI * t / ramp)); };
-    scene.wall_motion =
-        &simulation.add(std::make_unique<Walls>(scene.walls, grains, mesh, domain, speed),
-                        {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls",
-                        reason_for(p, "walls"));
-  }
+    add_walls(scene);
   if (grains != nullptr)
     simulation
         .add(std::make_unique<GrainMotion>(*grains), {Stage::kick, Stage::drift},

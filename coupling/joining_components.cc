@@ -1,5 +1,7 @@
 #include "coupling/joining_components.h"
 
+#include "coupling/specimen_components.h"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -145,8 +147,7 @@ void Walls::run(const Stage stage, const Clock &clock)
         add_wall_forces(grains_->grains, wall);
         wall.work += 0.5 * clock.dt * wall.reaction * wall.velocity;
       }
-    for (Wall &wall : walls_) // of the half step to come
-      wall.velocity = speed_(clock.time + 0.5 * clock.dt);
+    set_speeds(clock);
     break;
   case Stage::react:
     if (mesh_ != nullptr)
@@ -167,6 +168,20 @@ void Walls::run(const Stage stage, const Clock &clock)
   default:
     throw std::logic_error("the walls do nothing at this stage");
   }
+}
+
+/// Of the half step to come.
+void Walls::set_speeds(const Clock &clock)
+{
+  if (clock.time < preload_.until)
+  {
+    for (Wall &wall : walls_)
+      wall.velocity = preload_.speed(wall, clock);
+    closure_before_ = way();
+    return;
+  }
+  for (Wall &wall : walls_)
+    wall.velocity = speed_(clock.time + 0.5 * clock.dt - preload_.until);
 }
 
 void Walls::react(const Clock &clock)
@@ -205,6 +220,11 @@ double Walls::mesh_reaction(const bool of_layer) const
 
 double Walls::closure() const
 {
+  return way() - closure_before_;
+}
+
+double Walls::way() const
+{
   double sum = 0.;
   for (const Wall &wall : walls_)
     sum += wall.displacement;
@@ -224,13 +244,8 @@ void Walls::add_energies(Energies &energies) const
 
 void Walls::visit_state(StateArchive &archive)
 {
-  for (std::size_t w = 0; w < walls_.size(); ++w)
-  {
-    const std::string name = "walls/" + std::to_string(w);
-    archive.value(name + "/displacement", walls_[w].displacement);
-    archive.value(name + "/velocity", walls_[w].velocity);
-    archive.value(name + "/work", walls_[w].work);
-  }
+  visit_walls(archive, "walls", walls_);
+  archive.value("walls/closure_before", closure_before_);
   archive.owned_value("walls/support_work", support_work_);
 }
 } // namespace antiform::coupling

@@ -112,17 +112,31 @@ public:
   double grain_reaction(int region) const;
   /// \return that of the whole mesh, or of the layer's part of it; collective
   double mesh_reaction(bool of_layer = false) const;
-  /// Shortening of the section so far: inward displacement of all walls [m].
+  /// Shortening of the section so far, preloading left out: inward displacement of all
+  /// walls [m].
   double closure() const;
 
+  /// Until a time the walls follow a speed that depends on their reactions (a pressure is
+  /// put on); only then shortening begins.
+  struct Preload
+  {
+    double until = 0.; ///< [s]
+    std::function<double(const discrete::Wall &, const Clock &)> speed;
+  };
+  void preload(Preload preload) { preload_ = std::move(preload); }
+
 private:
+  void set_speeds(const Clock &clock);
   void react(const Clock &clock);
+  double way() const; ///< inward displacement of all walls [m]
 
   std::vector<discrete::Wall> &walls_;
   GrainState *grains_;
   MeshState *mesh_;
   const BridgingDomain *domain_;
   std::function<double(double)> speed_;
-  double support_work_ = 0.; ///< of the prescribed mesh dofs [J]
+  Preload preload_;
+  double closure_before_ = 0.; ///< way of the walls when shortening begins [m]
+  double support_work_ = 0.;   ///< of the prescribed mesh dofs [J]
 };
 } // namespace antiform::coupling

@@ -46,7 +46,7 @@ void install_wall_contacts(const Grains &grains,
 
 void add_wall_forces(Grains &grains, Wall &wall)
 {
-  wall.reaction = 0.;
+  wall.reaction = wall.pressing_stiffness = 0.;
   for (const WallContact &contact : wall.contacts)
   {
     const double gap = elastic_gap(wall, contact, grains);
@@ -56,6 +56,7 @@ void add_wall_forces(Grains &grains, Wall &wall)
     grains.force_x[contact.grain] += push * wall.normal.x;
     grains.force_y[contact.grain] += push * wall.normal.y;
     wall.reaction += push;
+    wall.pressing_stiffness += contact.weight * contact.stiffness;
   }
 }
 

@@ -27,8 +27,9 @@ struct Wall
   double velocity = 0.;              ///< along the normal, half-step [m/s]
   std::vector<WallContact> contacts; ///< in the order of grains
 
-  double reaction = 0.; ///< pressing force of the last evaluation, weighted [N]
-  double work = 0.;     ///< done on the grains so far [J]
+  double reaction = 0.;           ///< pressing force of the last evaluation, weighted [N]
+  double pressing_stiffness = 0.; ///< of the contacts that pressed then, weighted [N/m]
+  double work = 0.;               ///< done on the grains so far [J]
 };
 
 /// Let @p wall hold every grain whose gap to it is at most @p reach [m], stress-free

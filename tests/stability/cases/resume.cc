@@ -105,16 +105,25 @@ TEST_P(Resume, AfterAKillGivesTheSameBits)
 INSTANTIATE_TEST_SUITE_P(
     Scenes,
     Resume,
-    ::testing::Values(Variant{"Coupled", {}},
-                      Variant{"Frictionless", {"Matrix/Interface=frictionless"}},
-                      Variant{"PureGrains",
-                              {"Matrix/Representation=grains",
-                               "Matrix/Burial depth ratio=1",
-                               "Matrix/Base depth ratio=1"}},
-                      Variant{"Loaded",
-                              {"Components=layer, matrix, gravity, surface pressure, "
-                               "foundation, walls, damping",
-                               "Surface pressure/Pressure=1e6"}}),
+    ::testing::Values(
+        Variant{"Coupled", {}},
+        Variant{"Frictionless", {"Matrix/Interface=frictionless"}},
+        Variant{"PureGrains",
+                {"Matrix/Representation=grains", "Matrix/Burial depth ratio=1",
+                 "Matrix/Base depth ratio=1"}},
+        Variant{"Confined",
+                {"Components=layer, walls, servo walls, damping", "Layer/Length ratio=3",
+                 "Layer/Grains across=10", "Servo walls/Pressure=5e6",
+                 "Servo walls/Ramp=5"}},
+        Variant{"Pulled",
+                {"Components=layer, walls, damping", "Walls/Action=pull",
+                 "Layer/Length ratio=5", "Layer/Grains across=8",
+                 "Walls/Transits per millistrain=100", "Run/Strain multiple of peak=1.05",
+                 "Output/Samples per millistrain=4000"}},
+        Variant{"Loaded",
+                {"Components=layer, matrix, gravity, surface pressure, "
+                 "foundation, walls, damping",
+                 "Surface pressure/Pressure=1e6"}}),
     [](const auto &instance) { return instance.param.name; });
 
 class ResumeTiny : public Resume

@@ -1,0 +1,164 @@
+#include "cases/specimen.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+namespace
+{
+/// Slope of y over x by least squares; 0 with fewer than two points.
+double slope(const std::vector<double> &x, const std::vector<double> &y)
+{
+  const double n = static_cast<double>(x.size());
+  double sx = 0., sy = 0., sxx = 0., sxy = 0.;
+  for (std::size_t k = 0; k < x.size(); ++k)
+  {
+    sx += x[k];
+    sy += y[k];
+    sxx += x[k] * x[k];
+    sxy += x[k] * y[k];
+  }
+  const double spread = n * sxx - sx * sx;
+  return x.size() >= 2 && spread > 0. ? (n * sxy - sx * sy) / spread : 0.;
+}
+
+/// 1/A sum of a^2 over broken elements, a half of their length (Budiansky and O'Connell
+/// 1976) [-].
+double crack_density(const Scene &scene)
+{
+  double sum = 0.;
+  for (const discrete::Crack &crack : scene.grains->state.cracks)
+    sum += 0.25 * crack.length * crack.length;
+  return sum / (scene.geometry.length() * scene.geometry.thickness());
+}
+} // namespace
+
+SpecimenRecord::SpecimenRecord(const Scene &scene)
+{
+  const SectionGeometry &g = scene.geometry;
+  const discrete::Grains &grains = scene.grains->state.grains;
+  const double d = g.diameter(), L = g.length(), half = 0.5 * g.thickness();
+  // Axial gauges a fifth of the length beside the middle, away from platens and grips;
+  // lateral ones along the sides, over a quarter of the length.
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const double x = grains.reference_x[i], y = grains.reference_y[i];
+    for (const int side : {0, 1})
+    {
+      const double sign = side == 0 ? -1. : 1.;
+      if (std::abs(x - sign * 0.2 * L) <= d)
+        axial_[side].grains.push_back(static_cast<std::int32_t>(i));
+      if (sign * y >= half - 1.5 * d && std::abs(x) <= 0.125 * L)
+        lateral_[side].grains.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  for (const int side : {0, 1})
+  {
+    for (const std::int32_t i : axial_[side].grains)
+      axial_[side].place += grains.reference_x[i] / axial_[side].grains.size();
+    for (const std::int32_t i : lateral_[side].grains)
+      lateral_[side].place += grains.reference_y[i] / lateral_[side].grains.size();
+  }
+}
+
+const std::vector<std::string> &SpecimenRecord::columns()
+{
+  static const std::vector<std::string> names{
+      "gauge_strain_axial", "gauge_strain_lateral", "lateral_stress_Pa"};
+  return names;
+}
+
+/// Strain between two gauges, extension positive [-].
+double SpecimenRecord::elongation(const Scene &scene,
+                                  const Gauge (&pair)[2],
+                                  const bool axial) const
+{
+  const discrete::Grains &grains = scene.grains->state.grains;
+  const std::vector<double> &u = axial ? grains.displacement_x : grains.displacement_y;
+  double mean[2] = {0., 0.};
+  for (const int side : {0, 1})
+  {
+    for (const std::int32_t i : pair[side].grains)
+      mean[side] += u[i];
+    mean[side] /= static_cast<double>(pair[side].grains.size());
+  }
+  return (mean[1] - mean[0]) / (pair[1].place - pair[0].place);
+}
+
+std::vector<double> SpecimenRecord::measure(const Scene &scene) const
+{
+  double pressure = 0.;
+  for (const discrete::Wall &wall : scene.side_walls)
+    pressure += 0.5 * wall.reaction / scene.geometry.length();
+  return {elongation(scene, axial_, true), elongation(scene, lateral_, false), pressure};
+}
+
+void SpecimenRecord::keep(const Scene &scene,
+                          const std::vector<double> &values,
+                          const double stress)
+{
+  if (scene.loading_sign() * scene.shortening() <= 0.)
+  {
+    // Confinement is coming up: strains count from the last such sample.
+    axial_strain_.clear();
+    lateral_strain_.clear();
+    stress_.clear();
+  }
+  const double sign = -scene.loading_sign(); // strains in the direction of loading
+  axial_strain_.push_back(sign * values[0]);
+  lateral_strain_.push_back(sign * values[1]);
+  stress_.push_back(stress);
+}
+
+std::size_t SpecimenRecord::peak_sample(const double peak_stress) const
+{
+  return static_cast<std::size_t>(std::find(stress_.begin(), stress_.end(), peak_stress) -
+                                  stress_.begin());
+}
+
+void SpecimenRecord::fill(const Scene &scene,
+                          const double peak_stress,
+                          Summary &summary) const
+{
+  auto &results = summary.results;
+  const discrete::PackingQuality &quality = scene.grains->layer_quality;
+  results["porosity"] = {quality.porosity, "-"};
+  results["coordination_number"] = {quality.coordination_number, "-"};
+  results["floaters"] = {static_cast<double>(quality.floaters), "-"};
+  results["crack_density"] = {crack_density(scene), "-"};
+  const std::size_t peak = peak_sample(peak_stress);
+  if (peak >= stress_.size() || peak < 3)
+    return; // nothing has been loaded yet
+  // Moduli between 30 and 60 % of the stress that shortening has added at the peak.
+  const double first = stress_.front(), rise = peak_stress - first;
+  std::vector<double> axial, lateral, stress;
+  for (std::size_t k = 0; k <= peak; ++k)
+    if (stress_[k] >= first + 0.3 * rise && stress_[k] <= first + 0.6 * rise)
+    {
+      axial.push_back(axial_strain_[k]);
+      lateral.push_back(lateral_strain_[k]);
+      stress.push_back(stress_[k]);
+    }
+  results["young_modulus"] = {slope(axial, stress), "Pa"};
+  results["poisson_ratio"] = {-slope(axial, lateral), "-"};
+  // Cracks become unstable where the volume stops shrinking.
+  std::size_t smallest = 0;
+  double most = 0.;
+  for (std::size_t k = 0; k <= peak; ++k)
+    if (axial_strain_[k] + lateral_strain_[k] > most)
+    {
+      most = axial_strain_[k] + lateral_strain_[k];
+      smallest = k;
+    }
+  if (scene.grips == nullptr)
+    results["crack_damage_stress"] = {stress_[smallest], "Pa"};
+}
+
+void SpecimenRecord::visit_state(coupling::StateArchive &archive)
+{
+  archive.array("specimen/axial_strain", axial_strain_);
+  archive.array("specimen/lateral_strain", lateral_strain_);
+  archive.array("specimen/stress", stress_);
+}
+} // namespace antiform::cases
