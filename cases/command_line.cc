@@ -70,6 +70,21 @@ void add_parameters(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::parameters; });
 }
 
+void add_envelope(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "envelope", "Mohr-Coulomb and Hoek-Brown envelopes of laboratory tests");
+  command
+      .add_option("SOURCE", line.sources,
+                  "directories of finished runs of cases/laboratory, or tables (.csv) "
+                  "with columns sigma3_MPa, sigma1_MPa and perhaps site")
+      ->required();
+  command.add_flag("--json", line.json, "for programs");
+  command.footer("Example:\n  antiform envelope uniaxial biaxial-10 biaxial-20 tension\n"
+                 "  antiform envelope cases/laboratory/limestones.csv");
+  command.callback([&line] { line.command = CommandLine::Command::envelope; });
+}
+
 const std::vector<std::string> planned = {"study", "compare", "calibrate", "theory",
                                           "report"};
 } // namespace
@@ -80,7 +95,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
       std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
     throw InputError({"antiform " + arguments.front() +
                       ": does not exist yet in this version. What exists: run, check, "
-                      "parameters."});
+                      "parameters, envelope."});
 
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
@@ -91,6 +106,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_run(app, line);
   add_check(app, line);
   add_parameters(app, line);
+  add_envelope(app, line);
 
   try
   {

@@ -15,14 +15,16 @@ struct CommandLine
     help, ///< print help_text
     run,
     check,
-    parameters
+    parameters,
+    envelope
   };
   Command command = Command::help;
   std::string help_text;
-  RunOptions run;        ///< deck and overrides of `check` too
-  bool json = false;     ///< check --json
-  bool markdown = false; ///< parameters --markdown
-  std::string name;      ///< parameters NAME
+  RunOptions run;                   ///< deck and overrides of `check` too
+  bool json = false;                ///< check --json, envelope --json
+  bool markdown = false;            ///< parameters --markdown
+  std::string name;                 ///< parameters NAME
+  std::vector<std::string> sources; ///< envelope SOURCE...
 };
 
 /// Throws InputError for what it cannot accept, sub-commands that do not exist yet

@@ -1,5 +1,6 @@
 #include "cases/command_line.h"
 #include "cases/output_directory.h"
+#include "cases/strength_envelope.h"
 #include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
@@ -73,6 +74,8 @@ int execute(const CommandLine &line, MPI_Comm communicator)
              else if (line.command == CommandLine::Command::check)
                status = check(read_deck(line.run.deck, line.run.overrides), line.json,
                               std::cout);
+             else if (line.command == CommandLine::Command::envelope)
+               status = print_envelopes(line.sources, line.json, std::cout);
              else
                std::cout << (line.markdown ? parameters_markdown()
                                            : describe_parameters(line.name));

@@ -126,6 +126,9 @@ void SpecimenRecord::fill(const Scene &scene,
   results["porosity"] = {quality.porosity, "-"};
   results["coordination_number"] = {quality.coordination_number, "-"};
   results["floaters"] = {static_cast<double>(quality.floaters), "-"};
+  if (scene.grips == nullptr)
+    results["confining_pressure"] = {
+        scene.side_walls.empty() ? 0. : scene.parameters.servo_walls.pressure, "Pa"};
   results["crack_density"] = {crack_density(scene), "-"};
   const std::size_t peak = peak_sample(peak_stress);
   if (peak >= stress_.size() || peak < 3)
