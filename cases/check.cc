@@ -126,6 +126,25 @@ void line(std::ostream &out, const char *format, ...)
   va_end(arguments);
   out << text << '\n';
 }
+void print_mechanism(const Estimate &e, std::ostream &out)
+{
+  out << "\nMechanism (closed forms, docs/theory/continuum.md)\n";
+  line(out, "  slenderness ratio Lambda = %.3f (L/h at Lambda = 1: %.1f)",
+       e.slenderness_ratio, e.critical_length_ratio);
+  line(out,
+       "  gamma at buckling: pinned ends %.3f, guided ends %.3f (without matrix %.3f, "
+       "%.3f)",
+       e.pinned, e.guided, e.bare_pinned, e.bare_guided);
+  if (e.crushes_first)
+    out << "  warning: the layer is expected to crush before it folds (gamma above 1.5 "
+           "with "
+           "guided ends). Raise 'Layer / Slenderness ratio' or 'Matrix / Stiffness "
+           "contrast'.\n";
+  else if (e.guided > 1.)
+    out << "  the bare estimate with guided ends is above gamma = 1: bent beforehand, "
+           "the "
+           "layer folds and breaks at once\n";
+}
 } // namespace
 
 int check(const Parameters &p, const bool json, std::ostream &out)
@@ -139,7 +158,7 @@ int check(const Parameters &p, const bool json, std::ostream &out)
   const Sizes sizes = predict_sizes(p, g);
   const Estimate e = estimate(p, g);
   out << p.title << "\n\nScene\n";
-  line(out, "  section   %.1f m long, from y = %.1f to %.1f m", g.length(), g.base(),
+  line(out, "  section   %.4g m long, from y = %.4g to %.4g m", g.length(), g.base(),
        g.surface());
   line(out, "  layer     %s, h = %.3g m, L/h = %.2f, amplitude %.2f h, as %s",
        p.layer.shape.c_str(), g.thickness(), g.wavelength() / g.thickness(),
@@ -159,22 +178,8 @@ int check(const Parameters &p, const bool json, std::ostream &out)
       line(out, "  overlap   %.3g d wide (%.3g m), %.3g d of matrix grains before it",
            p.bridging.overlap, p.bridging.overlap * g.diameter(), p.bridging.buffer);
   }
-  out << "\nMechanism (closed forms, docs/theory/continuum.md)\n";
-  line(out, "  slenderness ratio Lambda = %.3f (L/h at Lambda = 1: %.1f)",
-       e.slenderness_ratio, e.critical_length_ratio);
-  line(out,
-       "  gamma at buckling: pinned ends %.3f, guided ends %.3f (without matrix %.3f, "
-       "%.3f)",
-       e.pinned, e.guided, e.bare_pinned, e.bare_guided);
-  if (e.crushes_first)
-    out << "  warning: the layer is expected to crush before it folds (gamma above 1.5 "
-           "with "
-           "guided ends). Raise 'Layer / Slenderness ratio' or 'Matrix / Stiffness "
-           "contrast'.\n";
-  else if (e.guided > 1.)
-    out << "  the bare estimate with guided ends is above gamma = 1: bent beforehand, "
-           "the "
-           "layer folds and breaks at once\n";
+  if (!p.is_specimen())
+    print_mechanism(e, out);
   out << "\nEffects\n";
   for (const Effect &effect : list_effects(p))
     line(out, "  %-17s %-12s %s", effect.name.c_str(), state_name(effect.state).c_str(),

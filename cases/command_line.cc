@@ -25,6 +25,8 @@ void add_run(CLI::App &app, CommandLine &line)
   CLI::App &command = *app.add_subcommand("run", "run a deck");
   add_deck(command, line.run);
   command.add_option("-o,--output", line.run.output, "output directory (DECK-output)")
+      ->check([](const std::string &text)
+              { return text.empty() ? "give a directory" : ""; })
       ->type_name("DIR");
   command
       .add_option("--threads", line.run.threads, "threads of each rank (OMP_NUM_THREADS)")
@@ -35,7 +37,7 @@ void add_run(CLI::App &app, CommandLine &line)
   command
       .add_option("--time-limit", line.run.time_limit,
                   "stop with a checkpoint after so many seconds (exit status 3)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-9, 1e12)) // not NaN either
       ->type_name("SECONDS");
   command.footer(
       "Example:\n  antiform run cases/burial-depth/quick.prm -o out "

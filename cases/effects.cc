@@ -35,10 +35,16 @@ std::vector<Effect> list_effects(const Parameters &p)
       grains && (p.layer.joint.breakable || (matrix && p.matrix.breakable));
   const bool slips = grains && matrix && p.matrix.interface == "frictionless";
 
+  const std::string unbonded = "joints of the layer begin without bonds";
+  const auto at_breakage = [&](const std::string &name, const std::string &what)
+  {
+    return p.has_unbonded_joints() ? Effect{name, State::present, unbonded}
+                                   : after_breakage(name, breakable, what);
+  };
+
   std::vector<Effect> list;
   list.push_back(choose("bonds", grains, "the layer is grains", "nothing is grains"));
-  list.push_back(
-      after_breakage("friction", breakable, "broken elements close and slide"));
+  list.push_back(at_breakage("friction", "broken elements close and slide"));
   if (slips)
   {
     list.push_back({"contacts", State::present, "layer and matrix may slide and part"});
@@ -46,8 +52,8 @@ std::vector<Effect> list_effects(const Parameters &p)
   }
   else
   {
-    list.push_back(after_breakage("contacts", breakable, "loose grains meet"));
-    list.push_back(after_breakage("search", breakable, "loose grains move"));
+    list.push_back(at_breakage("contacts", "loose grains meet"));
+    list.push_back(at_breakage("search", "loose grains move"));
   }
   list.push_back(choose("mesh", mesh, "the matrix is continuum",
                         "no part of the section is continuum"));
@@ -60,7 +66,8 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose(
       "base",
       grains && matrix && p.matrix.representation == "grains" && !p.has("foundation"),
-      "base grains rest on a roller", "the base is held by the mesh or the foundation"));
+      "base grains rest on a roller",
+      !matrix ? "there is no matrix" : "the base is held by the mesh or the foundation"));
   for (const std::string name : {"gravity", "surface pressure", "walls", "damping"})
     list.push_back(
         choose(name, p.has(name), "listed in Components", "not listed in Components"));

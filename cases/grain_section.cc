@@ -254,6 +254,9 @@ GrainSection make_grains(const Parameters &p,
   }
   progress("bonding");
   bond(section, p, pairs);
+  if (p.has_unbonded_joints())
+    unbond_some(section.state.joints, 0, p.layer.types, section.mean_radius,
+                static_cast<std::uint64_t>(p.layer.seed));
   return section;
 }
 

@@ -43,13 +43,13 @@ StiffnessSums grain_stiffness(const Scene &scene)
   return sums;
 }
 
-double make_heavier(Scene &scene)
+double rescale_density(Scene &scene)
 {
   if (scene.parameters.run.driver != "quasi-static")
     return 0.;
   discrete::Grains &grains = scene.grains->state.grains;
-  const double lost = discrete::make_heavier(grains, grain_stiffness(scene),
-                                             scene.mass_weight, scene.dt0);
+  const double lost = discrete::rescale_density(grains, grain_stiffness(scene),
+                                                scene.mass_weight, scene.dt0);
   if (scene.bridging && !scene.bridging->is_factorised_for(grains))
     scene.bridging->factorise(grains, scene.mesh->inverse_mass);
   return lost;

@@ -17,10 +17,11 @@ discrete::StiffnessSums grain_stiffness(const Scene &scene);
 /// \return the step that they allow, the deck's safety factor included [s]
 double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
 
-/// Grains that have come to carry more contacts must not be too light for the step of a
-/// quasi-static run: discrete::make_heavier(), and the bridging domain knows of it.
+/// Inertial masses of a quasi-static run for the contacts that grains carry now, so that
+/// none is too light for the step: discrete::rescale_density(), and the bridging domain
+/// knows of it.
 /// \return kinetic energy lost [J]
-double make_heavier(Scene &scene);
+double rescale_density(Scene &scene);
 
 /// Time of an axial wave along the layer with its inertial masses [s].
 double layer_transit(const Scene &scene);

@@ -44,6 +44,7 @@ int run_deck(RunOptions options, MPI_Comm communicator)
   Parameters parameters;
   together(communicator,
            [&] { parameters = read_deck(options.deck, options.overrides); });
+  demand_one_rank_of_grains(parameters, communicator); // the same on all of them
   together(communicator,
            [&]
            {

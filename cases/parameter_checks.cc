@@ -58,6 +58,24 @@ void check_components(const Parameters &p, Findings &findings)
     find("nothing loads the scene. Add walls, gravity or surface pressure.");
 }
 
+void check_types(const Parameters &p, Findings &findings)
+{
+  const discrete::JointTypes &types = p.layer.types;
+  if (types.slit_fraction + types.gapped_fraction > 1.)
+    findings.push_back(
+        {{"Layer/Joint types/Slit fraction", "Layer/Joint types/Gapped fraction"},
+         "with 'Layer/Joint types/Gapped fraction' = " +
+             short_text(types.gapped_fraction) +
+             " the shares add up to more than 1. Give less of one."});
+  if (p.has_unbonded_joints() && (p.has("gravity") || p.has("surface pressure")))
+    findings.push_back(
+        {{types.slit_fraction > 0. ? "Layer/Joint types/Slit fraction"
+                                   : "Layer/Joint types/Gapped fraction",
+          "Components"},
+         "a prestressed layer must be bonded throughout in this version. Give 0, or "
+         "remove gravity and surface pressure from 'Components'."});
+}
+
 /// Grips and servo walls are for specimens of the laboratory.
 void check_specimen(const Parameters &p, Findings &findings)
 {
@@ -69,6 +87,10 @@ void check_specimen(const Parameters &p, Findings &findings)
     findings.push_back(
         {{"Components"},
          "servo walls confine a specimen between walls, " + specimen + ", and walls."});
+  if (p.has("servo walls") && p.servo_walls.pressure > 0.02 * p.layer.young_modulus)
+    findings.push_back({{"Servo walls/Pressure", "Layer/Young modulus"},
+                        "more than 2 % of the rock's Young's modulus, beyond the small "
+                        "strains of joints. Give less, in Pa."});
   if (pulls && !p.is_specimen())
     findings.push_back(
         {{"Walls/Action", "Components"}, "grips pull a specimen, " + specimen + "."});
@@ -299,6 +321,7 @@ std::vector<Finding> check_parameters(const Parameters &p)
   {
     check_layer(p, findings);
     check_specimen(p, findings);
+    check_types(p, findings);
   }
   if (p.has("layer") && p.has("matrix"))
     check_matrix(p, findings);
@@ -319,6 +342,12 @@ LayerParameters::LayerParameters()
 bool Parameters::has(const std::string &component) const
 {
   return std::find(components.begin(), components.end(), component) != components.end();
+}
+
+bool Parameters::has_unbonded_joints() const
+{
+  return has("layer") && layer.representation == "grains" &&
+         layer.types.slit_fraction + layer.types.gapped_fraction > 0.;
 }
 
 bool Parameters::is_specimen() const

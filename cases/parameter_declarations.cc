@@ -39,6 +39,10 @@ void declare(discrete::FlatJoint &joint, Declarations &entries)
                  "kappa, normal over shear stiffness [-].", Number::above(0.));
   declare_strengths(joint.tensile_strength, joint.cohesion, joint.tan_friction,
                     joint.residual_friction, entries);
+  entries.number("Residual cohesion", joint.residual_cohesion,
+                 "Shear strength of the closed part of a broken element without pressure "
+                 "[Pa].",
+                 Number::at_least(0.));
   entries.number("Radius multiplier", joint.radius_multiplier,
                  "lambda, half length of the joint over the smaller radius [-].",
                  Number::above(0.).up_to(1.));
@@ -47,6 +51,28 @@ void declare(discrete::FlatJoint &joint, Declarations &entries)
                 Number::between(1, 16));
   entries.flag("Element moment", joint.element_moment,
                "Does the stress vary linearly within an element, or is it uniform?");
+  entries.leave();
+}
+
+void declare(discrete::JointTypes &types, Declarations &entries)
+{
+  entries.enter("Joint types");
+  entries.number("Slit fraction", types.slit_fraction,
+                 "Share of the joints that begin without bonds, their faces touching "
+                 "(type S of PFC) [-].",
+                 Number::at_least(0.).up_to(1.));
+  entries.number(
+      "Gapped fraction", types.gapped_fraction,
+      "Share of the joints that begin without bonds, their faces apart (type G) "
+      "[-].",
+      Number::at_least(0.).up_to(1.));
+  entries.number("Gap ratio", types.gap_ratio,
+                 "Mean gap of the gapped joints over the mean grain radius [-].",
+                 Number::at_least(0.).up_to(1.));
+  entries.number("Gap deviation", types.gap_deviation,
+                 "Standard deviation of those gaps over their mean; normal, cut off at 0 "
+                 "[-].",
+                 Number::at_least(0.));
   entries.leave();
 }
 
@@ -113,6 +139,7 @@ void declare(LayerParameters &layer, Declarations &entries)
   entries.flag("Breakable", layer.joint.breakable,
                "May joints break? If not, would-be breaks are counted.");
   declare(layer.joint, entries);
+  declare(layer.types, entries);
   entries.leave();
 }
 
@@ -232,7 +259,7 @@ void declare(WallsParameters &walls, Declarations &entries)
       "press|pull");
   entries.number("Grip layers", walls.grip_layers,
                  "Width of each grip over the mean grain diameter (pull) [-].",
-                 Number::above(0.));
+                 Number::at_least(1.));
   entries.leave();
 }
 
@@ -279,8 +306,8 @@ void declare(RunParameters &run, Declarations &entries)
   entries.number("Step safety", run.safety, "Step over the rigorous stable step [-].",
                  Number::above(0.).below(1.));
   entries.number("End shortening", run.end_shortening,
-                 "Shortening at which the run ends; 0: after the peak, as the next two "
-                 "entries say [-].",
+                 "Shortening (or extension) at which the run ends, whatever the stress "
+                 "does; 0: after the peak, as the next three entries say [-].",
                  Number::at_least(0.).below(1.));
   entries.number("Strain multiple of peak", run.strain_multiple_of_peak,
                  "The run ends at this multiple of the shortening at the peak [-].",

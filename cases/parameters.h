@@ -1,6 +1,7 @@
 #pragma once
 
 #include "discrete/flat_joint.h"
+#include "discrete/joint_types.h"
 
 #include <map>
 #include <stdexcept>
@@ -48,6 +49,7 @@ struct LayerParameters
   double grain_density = 2500.;  ///< [kg/m^3]
   int seed = 1;
   discrete::FlatJoint joint; ///< breakable etc.
+  discrete::JointTypes types;
 };
 
 /// The weak rock around the layer.
@@ -158,6 +160,8 @@ struct Parameters
   OutputParameters output;
 
   bool has(const std::string &component) const;
+  /// The layer has joints that begin without bonds.
+  bool has_unbonded_joints() const;
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.

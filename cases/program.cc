@@ -335,6 +335,17 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
   }
 }
 
+/// Beside other ranks of one machine a rank has one thread, unless told otherwise.
+void choose_threads(const RunOptions &options, const MPI_Comm communicator)
+{
+  if (options.threads > 0)
+    omp_set_num_threads(options.threads);
+  else if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+           std::getenv("OMP_NUM_THREADS") == nullptr)
+    omp_set_num_threads(1);
+}
+} // namespace
+
 void demand_one_rank_of_grains(const Parameters &p, const MPI_Comm communicator)
 {
   const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
@@ -347,30 +358,29 @@ void demand_one_rank_of_grains(const Parameters &p, const MPI_Comm communicator)
          "set it to continuum, which runs on any number."});
 }
 
-/// Beside other ranks of one machine a rank has one thread, unless told otherwise.
-void choose_threads(const RunOptions &options, const MPI_Comm communicator)
-{
-  if (options.threads > 0)
-    omp_set_num_threads(options.threads);
-  else if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 &&
-           std::getenv("OMP_NUM_THREADS") == nullptr)
-    omp_set_num_threads(1);
-}
-} // namespace
-
 int run(const Parameters &parameters,
         const RunOptions &options,
         const MPI_Comm communicator)
 {
-  demand_one_rank_of_grains(parameters, communicator);
   choose_threads(options, communicator);
   const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
   std::optional<coupling::StateReader> state =
       open_state(parameters, options, communicator);
   std::filesystem::create_directories(options.output + "/fields");
   RunLog log(options.output + "/log.txt", first, options.resume);
+  std::string failure; // of the first rank, told on all
   if (first && !options.resume)
-    write_text(options.output + "/deck.prm", effective_deck(parameters));
+    try
+    {
+      write_text(options.output + "/deck.prm", effective_deck(parameters));
+    }
+    catch (const InputError &error)
+    {
+      failure = error.what();
+    }
+  failure = dealii::Utilities::MPI::broadcast(communicator, failure);
+  if (!failure.empty())
+    throw InputError({failure});
   log.line("antiform " ANTIFORM_VERSION ": " + parameters.title);
 
   if (parameters.run.driver == "static")

@@ -21,6 +21,9 @@ struct RunOptions
   double time_limit = 0.;             ///< wall time [s]; 0: none
 };
 
+/// Throws InputError when the scene has grains and there is more than one rank.
+void demand_one_rank_of_grains(const Parameters &parameters, MPI_Comm communicator);
+
 /// Build the scene and step it to its end. Returns the exit status of the program: 0
 /// done, 1 the user's error, 2 the physics' error, 3 interrupted with a checkpoint.
 /// Collective.

@@ -37,9 +37,9 @@ const std::vector<std::string> history_columns{"step",
 
 // A peak counts when the curve has stayed below it over so much shortening.
 constexpr double settled = 2e-4;
-// The stress has fallen for good when it has stayed down over so much, two axial transits
-// at the usual speeds.
-constexpr double fallen = 2e-5;
+// The stress has fallen for good when it has stayed down over so many axial transits and
+// samples.
+constexpr double fallen_transits = 2., fallen_samples = 3.;
 } // namespace
 
 Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
@@ -312,6 +312,9 @@ void Recorder::look_for_end(const Sample &sample)
       why_finished_ = "the shortening asked for";
     return;
   }
+  const double transit = 1e-3 / scene_.parameters.walls.transits_per_millistrain;
+  const double between = 1e-3 / scene_.parameters.output.samples_per_millistrain;
+  const double fallen = std::max(fallen_transits * transit, fallen_samples * between);
   if (run.stress_ratio_of_peak > 0. && sample.strain - last_high_strain_ >= fallen)
     why_finished_ = "the wanted share of the peak stress";
   const double below = sample.strain - peak_strain_;
@@ -359,7 +362,8 @@ double Recorder::section_stiffness() const
     n += 1.;
   }
   const double height = scene_.geometry.surface() - scene_.geometry.base();
-  return n >= 2. ? (n * xy - x * y) / (n * xx - x * x) / height : 0.;
+  const double spread = n * xx - x * x;
+  return n >= 2. && spread > 0. ? (n * xy - x * y) / spread / height : 0.;
 }
 
 double Recorder::crack_initiation_stress() const
@@ -385,14 +389,11 @@ void Recorder::fill(Summary &summary) const
   results["unbalanced_ratio"] = {ratio_, "-"};
   if (specimen_)
     specimen_->fill(scene_, peak_stress_, summary);
-  else
-  {
-    results["section_stiffness"] = {section_stiffness(), "Pa"};
-    results["matrix_share_at_peak"] = {peak_share_, "-"};
-    results["fold_amplitude"] = {last_.fold_amplitude, "m"};
-    results["limb_dip"] = {last_.limb_dip, "deg"};
-    results["surface_uplift"] = {last_.surface_uplift, "m"};
-  }
+  results["section_stiffness"] = {section_stiffness(), "Pa"};
+  results["matrix_share_at_peak"] = {peak_share_, "-"};
+  results["fold_amplitude"] = {last_.fold_amplitude, "m"};
+  results["limb_dip"] = {last_.limb_dip, "deg"};
+  results["surface_uplift"] = {last_.surface_uplift, "m"};
   if (scene_.grains)
   {
     const auto &cracks = scene_.grains->state.cracks;

@@ -206,6 +206,8 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
   if (foundation)
     add_foundation(*scene, std::move(foundation));
   add_common_components(*scene);
+  if (p.has_unbonded_joints())
+    scene->add_breakage_components();
   return scene;
 }
 } // namespace antiform::cases

@@ -37,8 +37,8 @@ enum Rank
 void add_contacts(Scene &scene)
 {
   GrainState &state = scene.grains->state;
-  const auto heavier = [&scene] { return make_heavier(scene); };
-  scene.simulation->add(std::make_unique<ContactSearch>(state, scene.contacts, heavier),
+  const auto rescale = [&scene] { return rescale_density(scene); };
+  scene.simulation->add(std::make_unique<ContactSearch>(state, scene.contacts, rescale),
                         {Stage::forces}, rank_search, "search",
                         reason_for(scene.parameters, "search"));
   scene.simulation->add(std::make_unique<GrainContacts>(state, scene.contacts),
@@ -199,7 +199,13 @@ void add_walls(Scene &scene)
                               scene.bridging.get(), speed),
       {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls", reason);
   if (p.has("servo walls"))
-    add_servo_walls(scene, 20. * full);
+  {
+    // Ten times what the pressure's own strain needs in its ramp: room to follow breaks.
+    const double strain = p.servo_walls.pressure / p.layer.young_modulus;
+    add_servo_walls(scene,
+                    std::max(20. * full, 10. * strain * scene.geometry.length() /
+                                             (p.servo_walls.ramp * scene.transit_time)));
+  }
 }
 } // namespace
 

@@ -23,42 +23,68 @@ double slope(const std::vector<double> &x, const std::vector<double> &y)
   return x.size() >= 2 && spread > 0. ? (n * sxy - sx * sy) / spread : 0.;
 }
 
-/// 1/A sum of a^2 over broken elements, a half of their length (Budiansky and O'Connell
-/// 1976) [-].
+/// 1/A sum of a^2 over elements without bond, whether broken or never bonded, a half of
+/// their length (Budiansky and O'Connell 1976) [-].
 double crack_density(const Scene &scene)
 {
   double sum = 0.;
-  for (const discrete::Crack &crack : scene.grains->state.cracks)
-    sum += 0.25 * crack.length * crack.length;
+  const discrete::Joints &joints = scene.grains->state.joints;
+  for (const discrete::DamagedJoint &damaged : joints.damaged)
+  {
+    const double a =
+        joints.half_length[damaged.joint] / static_cast<double>(damaged.bond.size());
+    for (const discrete::Bond bond : damaged.bond)
+      sum += bond != discrete::Bond::bonded ? a * a : 0.;
+  }
   return sum / (scene.geometry.length() * scene.geometry.thickness());
 }
 } // namespace
+
+SpecimenRecord::Gauge
+SpecimenRecord::gauge(const std::vector<double> &coordinate,
+                      const std::function<bool(double, double)> &holds,
+                      const discrete::Grains &grains)
+{
+  Gauge found;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (holds(grains.reference_x[i], grains.reference_y[i]))
+    {
+      found.grains.push_back(static_cast<std::int32_t>(i));
+      found.place += coordinate[i];
+    }
+  found.place /= static_cast<double>(found.grains.size()); // none: not a number
+  return found;
+}
 
 SpecimenRecord::SpecimenRecord(const Scene &scene)
 {
   const SectionGeometry &g = scene.geometry;
   const discrete::Grains &grains = scene.grains->state.grains;
   const double d = g.diameter(), L = g.length(), half = 0.5 * g.thickness();
-  // Axial gauges a fifth of the length beside the middle, away from platens and grips;
-  // lateral ones along the sides, over a quarter of the length.
-  for (std::size_t i = 0; i < grains.size(); ++i)
+  // Axial gauges away from platens and grips; lateral ones along the sides, over a
+  // quarter of the length. Where so few grains are that one holds none, they are wider.
+  const bool pulls = scene.parameters.walls.action == "pull";
+  const double at =
+      pulls ? 0.3 * (L - 2. * scene.parameters.walls.grip_layers * d) : 0.2 * L;
+  for (double wide = 1.; wide < 100. * L / d; wide *= 1.5)
   {
-    const double x = grains.reference_x[i], y = grains.reference_y[i];
     for (const int side : {0, 1})
     {
       const double sign = side == 0 ? -1. : 1.;
-      if (std::abs(x - sign * 0.2 * L) <= d)
-        axial_[side].grains.push_back(static_cast<std::int32_t>(i));
-      if (sign * y >= half - 1.5 * d && std::abs(x) <= 0.125 * L)
-        lateral_[side].grains.push_back(static_cast<std::int32_t>(i));
+      axial_[side] = gauge(
+          grains.reference_x,
+          [&](const double x, const double)
+          { return std::abs(x - sign * at) <= wide * d; },
+          grains);
+      lateral_[side] = gauge(
+          grains.reference_y,
+          [&](const double x, const double y) {
+            return sign * y >= half - 1.5 * wide * d && std::abs(x) <= 0.125 * L * wide;
+          },
+          grains);
     }
-  }
-  for (const int side : {0, 1})
-  {
-    for (const std::int32_t i : axial_[side].grains)
-      axial_[side].place += grains.reference_x[i] / axial_[side].grains.size();
-    for (const std::int32_t i : lateral_[side].grains)
-      lateral_[side].place += grains.reference_y[i] / lateral_[side].grains.size();
+    if (axial_[1].place > axial_[0].place && lateral_[1].place > lateral_[0].place)
+      return;
   }
 }
 
@@ -105,6 +131,12 @@ void SpecimenRecord::keep(const Scene &scene,
     lateral_strain_.clear();
     stress_.clear();
   }
+  if (!scene.side_walls.empty() && stress_.empty())
+  {
+    const double wanted = scene.parameters.servo_walls.pressure;
+    off_pressure_ =
+        std::max(std::abs(values[2] / wanted - 1.), std::abs(stress / wanted - 1.));
+  }
   const double sign = -scene.loading_sign(); // strains in the direction of loading
   axial_strain_.push_back(sign * values[0]);
   lateral_strain_.push_back(sign * values[1]);
@@ -129,6 +161,10 @@ void SpecimenRecord::fill(const Scene &scene,
   if (scene.grips == nullptr)
     results["confining_pressure"] = {
         scene.side_walls.empty() ? 0. : scene.parameters.servo_walls.pressure, "Pa"};
+  if (!scene.side_walls.empty() && off_pressure_ > 0.02)
+    summary.warnings.push_back(
+        "shortening began with the confinement " + std::to_string(100. * off_pressure_) +
+        " % off its value; raise 'Servo walls / Ramp', or give less pressure");
   results["crack_density"] = {crack_density(scene), "-"};
   const std::size_t peak = peak_sample(peak_stress);
   if (peak >= stress_.size() || peak < 3)
@@ -163,5 +199,6 @@ void SpecimenRecord::visit_state(coupling::StateArchive &archive)
   archive.array("specimen/axial_strain", axial_strain_);
   archive.array("specimen/lateral_strain", lateral_strain_);
   archive.array("specimen/stress", stress_);
+  archive.value("specimen/off_pressure", off_pressure_);
 }
 } // namespace antiform::cases

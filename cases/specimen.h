@@ -5,6 +5,7 @@
 #include "coupling/state_file.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,11 +36,15 @@ private:
     std::vector<std::int32_t> grains;
     double place = 0.; ///< mean reference coordinate [m]
   };
+  static Gauge gauge(const std::vector<double> &coordinate,
+                     const std::function<bool(double, double)> &holds,
+                     const discrete::Grains &grains);
   double elongation(const Scene &scene, const Gauge (&pair)[2], bool axial) const;
   std::size_t peak_sample(double peak_stress) const;
 
   Gauge axial_[2], lateral_[2];
   // Samples since shortening began.
   std::vector<double> axial_strain_, lateral_strain_, stress_;
+  double off_pressure_ = 0.; ///< share by which confinement was missed when it began
 };
 } // namespace antiform::cases

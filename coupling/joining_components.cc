@@ -2,6 +2,7 @@
 
 #include "coupling/specimen_components.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -27,10 +28,14 @@ void ConstrainedForces::measure()
   if (grains_ != nullptr)
   {
     const Grains &g = grains_->grains;
+    double n_free = 0.;
     for (std::size_t i = 0; i < g.size(); ++i)
       if (g.inverse_mass[i] > 0.)
+      {
         free += std::hypot(g.force_x[i], g.force_y[i]);
-    free /= static_cast<double>(g.size());
+        n_free += 1.;
+      }
+    free /= std::max(1., n_free);
     for (const JointForce &force : grains_->joints.force)
       carried += std::hypot(force.x, force.y);
     carried /= static_cast<double>(grains_->joints.size());

@@ -217,7 +217,7 @@ std::string problem_of(const std::string &bytes)
 {
   if (bytes.compare(0, magic.size(), magic) != 0)
     return "it is not a state file of antiform (state.h5). Check the folder, or run "
-           "without --resume to start afresh.";
+           "afresh in another directory (-o DIR).";
   int version = 0;
   std::size_t n_bytes = 0;
   unsigned long long crc = 0;
@@ -228,10 +228,11 @@ std::string problem_of(const std::string &bytes)
   if (found >= 1 && version != format_version)
     return "it is of format version " + std::to_string(version) +
            ", this program reads version " + std::to_string(format_version) +
-           ". Resume with the program that wrote it, or start afresh.";
+           ". Resume with the program that wrote it, or run afresh in another directory "
+           "(-o DIR).";
   const std::string damaged =
-      " It was damaged after it was written: restore it from a copy, or run without "
-      "--resume to start afresh.";
+      " It was damaged after it was written: restore it from a copy, or run "
+      "afresh in another directory (-o DIR).";
   if (found == 3 && bytes.size() != n_bytes)
     return "it has " + std::to_string(bytes.size()) + " bytes of the " +
            std::to_string(n_bytes) + " that were written." + damaged;
@@ -405,7 +406,8 @@ StateReader::StateReader(const std::string &path, const MPI_Comm communicator)
   catch (const std::runtime_error &error)
   {
     throw std::runtime_error("'" + path + "' cannot be resumed from: " + error.what() +
-                             ". Resume with the program that wrote it, or start afresh.");
+                             ". Resume with the program that wrote it, or run afresh in "
+                             "another directory (-o DIR).");
   }
   const std::int64_t n_ranks = ranks::n_mpi_processes(communicator);
   const std::int64_t n_written = find<std::vector<std::int64_t>>(ranks_name).at(0);
@@ -413,7 +415,8 @@ StateReader::StateReader(const std::string &path, const MPI_Comm communicator)
     throw std::runtime_error("'" + path + "' was written by " +
                              std::to_string(n_written) + " MPI rank(s), this run has " +
                              std::to_string(n_ranks) + ". Resume with mpirun -np " +
-                             std::to_string(n_written) + ", or start afresh.");
+                             std::to_string(n_written) +
+                             ", or run afresh in another directory (-o DIR).");
   for (const auto &entry : entries_)
     is_read_[entry.first] = entry.first == ranks_name;
 }
@@ -423,16 +426,17 @@ T &StateReader::find(const std::string &name)
 {
   const auto place = entries_.find(name);
   if (place == entries_.end())
-    throw std::runtime_error("'" + path_ + "' has no entry '" + name +
-                             "': it belongs to another deck or another version of the "
-                             "program. Resume with those, or start afresh.");
+    throw std::runtime_error(
+        "'" + path_ + "' has no entry '" + name +
+        "': it belongs to another deck or another version of the "
+        "program. Resume with those, or run afresh in another directory (-o DIR).");
   T *const contents = std::get_if<T>(&place->second);
   if (!contents)
-    throw std::runtime_error("'" + path_ + "' holds " + type_name(place->second.index()) +
-                             " as entry '" + name + "', " +
-                             type_name(StateEntry(T()).index()) +
-                             " are wanted: it was written by another version of the "
-                             "program. Resume with that one, or start afresh.");
+    throw std::runtime_error(
+        "'" + path_ + "' holds " + type_name(place->second.index()) + " as entry '" +
+        name + "', " + type_name(StateEntry(T()).index()) +
+        " are wanted: it was written by another version of the "
+        "program. Resume with that one, or run afresh in another directory (-o DIR).");
   is_read_[name] = true;
   return *contents;
 }
@@ -454,7 +458,8 @@ void StateReader::check_size(const std::string &name,
     throw std::runtime_error("'" + path_ + "' has " + std::to_string(stored) +
                              " values in entry '" + name +
                              "', the scene of this deck needs " + std::to_string(wanted) +
-                             ". Resume with the deck that wrote it, or start afresh.");
+                             ". Resume with the deck that wrote it, or run afresh in "
+                             "another directory (-o DIR).");
 }
 
 void StateReader::array(const std::string &name, std::vector<double> &values)
@@ -491,8 +496,9 @@ void StateReader::expect_all_read() const
 {
   for (const auto &[name, is_read] : is_read_)
     if (!is_read)
-      throw std::runtime_error("'" + path_ + "' holds the entry '" + name +
-                               "', which nothing in this deck uses. Resume with the deck "
-                               "that wrote it, or start afresh.");
+      throw std::runtime_error(
+          "'" + path_ + "' holds the entry '" + name +
+          "', which nothing in this deck uses. Resume with the deck "
+          "that wrote it, or run afresh in another directory (-o DIR).");
 }
 } // namespace antiform::coupling

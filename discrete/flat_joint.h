@@ -18,6 +18,7 @@ struct FlatJoint
   double cohesion = 60e6;            ///< c_b [Pa]
   double tan_friction = 0.140540835; ///< tan(phi_b) of the bonded element [-]
   double residual_friction = 0.4;    ///< mu of the broken element [-]
+  double residual_cohesion = 0.;     ///< of the closed part of a broken element [Pa]
   double radius_multiplier = 1.;     ///< lambda: half length over the smaller radius [-]
   int n_elements = 3;                ///< N, elements of a joint [-]
   bool element_moment = true;        ///< stress varies linearly within an element

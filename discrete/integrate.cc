@@ -175,17 +175,6 @@ Inertia scaled_inertia(const Grains &grains,
   return {w * std::max(grains.mass[i], sums.translation[i] * squared),
           w * std::max(grains.inertia[i], 1.5 * sums.rotation[i] * squared)};
 }
-
-/// Raise an inertia to @p wanted if it is less, momentum kept: velocities are to be
-/// multiplied by the result.
-double raise(double &inverse, const double wanted)
-{
-  if (inverse * wanted <= 1.)
-    return 1.;
-  const double factor = 1. / (inverse * wanted);
-  inverse = 1. / wanted;
-  return factor;
-}
 } // namespace
 
 void scale_density(Grains &grains,
@@ -201,30 +190,23 @@ void scale_density(Grains &grains,
   }
 }
 
-double make_heavier(Grains &grains,
-                    const StiffnessSums &sums,
-                    const std::vector<double> &weight,
-                    const double dt0)
+double rescale_density(Grains &grains,
+                       const StiffnessSums &sums,
+                       const std::vector<double> &weight,
+                       const double dt0)
 {
   double lost = 0.;
-  const auto slow = [&lost](double &velocity, const double inertia, const double factor)
-  {
-    lost += 0.5 * inertia * velocity * velocity * (1. - factor);
-    velocity *= factor;
-  };
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
+    if (grains.inverse_mass[i] == 0.)
+      continue; // its motion is prescribed
     const Inertia wanted = scaled_inertia(grains, i, sums, weight, dt0);
-    const double mass = 1. / grains.inverse_mass[i];
-    const double inertia = 1. / grains.inverse_inertia[i];
-    if (const double factor = raise(grains.inverse_mass[i], wanted.mass); factor < 1.)
-    {
-      slow(grains.velocity_x[i], mass, factor);
-      slow(grains.velocity_y[i], mass, factor);
-    }
-    if (const double factor = raise(grains.inverse_inertia[i], wanted.inertia);
-        factor < 1.)
-      slow(grains.spin[i], inertia, factor);
+    const double vx = grains.velocity_x[i], vy = grains.velocity_y[i];
+    lost += 0.5 * (1. / grains.inverse_mass[i] - wanted.mass) * (vx * vx + vy * vy) +
+            0.5 * (1. / grains.inverse_inertia[i] - wanted.inertia) * grains.spin[i] *
+                grains.spin[i];
+    grains.inverse_mass[i] = 1. / wanted.mass;
+    grains.inverse_inertia[i] = 1. / wanted.inertia;
   }
   return lost;
 }

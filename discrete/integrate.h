@@ -82,12 +82,11 @@ void scale_density(Grains &grains,
                    const StiffnessSums &sums,
                    const std::vector<double> &weight,
                    double dt0);
-/// Raise the inertial masses, in the course of a run, to those of scale_density() where
-/// they are less, none is lowered. The momentum of each grain is kept, as when a grain
-/// catches a mass at rest.
-/// \return kinetic energy lost by that [J]
-double make_heavier(Grains &grains,
-                    const StiffnessSums &sums,
-                    const std::vector<double> &weight,
-                    double dt0);
+/// The same in the course of a run, whose contacts have changed: the inertia of a
+/// quasi-static run follows what a grain carries now, up and down, and velocities stay
+/// (as in PFC). \return kinetic energy lost by that, less than 0 where it is gained [J]
+double rescale_density(Grains &grains,
+                       const StiffnessSums &sums,
+                       const std::vector<double> &weight,
+                       double dt0);
 } // namespace antiform::discrete

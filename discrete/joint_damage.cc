@@ -199,7 +199,8 @@ Evaluation broken_element(const double k_n,
     old_shear = now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
     slip = old_shear;
   }
-  const double limit = law.residual_friction * std::abs(normal.normal_force);
+  const double limit = law.residual_friction * std::abs(normal.normal_force) +
+                       law.residual_cohesion * active;
   const Rub friction = rub(k_s, limit, active, old_active, now.shear, old_shear, slip);
   dissipated = friction.dissipated;
   const double energy =
@@ -322,9 +323,12 @@ void evaluate_damaged(const Grains &grains,
   damaged.gap = now.gap;
   damaged.shear = now.shear;
   damaged.rotation = now.rotation;
-  // Parted for good: the faces are a face length apart, or have slid off one another.
+  // Parted for good: the faces are half their length further apart than they were made,
+  // or have slid off one another.
   const double R = joints.half_length[j];
-  if (!any_bonded && (smallest_gap > R || std::abs(now.shear) > 2. * R))
+  const double made = joints.initial_gap.empty() ? 0. : joints.initial_gap[j];
+  if (!any_bonded &&
+      (smallest_gap > std::max(0., made) + R || std::abs(now.shear) > 2. * R))
   {
     damaged.fracture_energy += strain_energy(joints, damaged);
     damaged.removed = true;

@@ -169,9 +169,10 @@ void remove_floaters(Relaxation &relaxation,
     if (change.grown + change.swollen + change.deleted == 0)
       return;
     if (disks.empty())
-      throw std::invalid_argument(
-          "Packing: no grain of the region has three neighbours within the installation "
-          "gap; give smaller grains or a larger installation gap.");
+      throw PackingError(
+          "no grain of the region has three neighbours within the installation gap; give "
+          "smaller grains or a larger installation gap: grains left",
+          0., 1.);
     relaxation.replace(std::move(disks));
     rest();
   }

@@ -106,3 +106,36 @@ TEST(Laboratory, TensionBreaksOneSectionAndClosesItsLedger)
   EXPECT_GT(result(summary, "cracks_tensile"), 16. * 3.); // a section has 16 grains
   EXPECT_EQ(summary.at("effects").at("walls").at("active"), true);
 }
+
+TEST(Laboratory, GaugesLieBetweenTheGripsAndHoldGrains)
+{
+  const TemporaryFolder folder;
+  // Ten layers are left between the grips; the modulus is that of few grains.
+  const nlohmann::json pulled = run_specimen(
+      "tension",
+      elastic_and({"Layer/Grains across=12.5", "Walls/Transits per millistrain=300"}),
+      folder.path("pulled"));
+  EXPECT_NEAR(result(pulled, "young_modulus") / 56e9, 1., 0.15);
+  // So few grains that windows of the usual size are empty.
+  const nlohmann::json few = run_specimen(
+      "uniaxial",
+      elastic_and({"Layer/Grains across=3", "Layer/Length ratio=1", "Layer/Seed=3"}),
+      folder.path("few"));
+  EXPECT_GT(result(few, "young_modulus"), 0.);
+}
+
+TEST(Laboratory, TellsOfAConfinementThatIsNotReached)
+{
+  const TemporaryFolder folder;
+  const nlohmann::json reached = run_specimen(
+      "biaxial", elastic_and({"Run/End shortening=2e-5"}), folder.path("reached"));
+  EXPECT_TRUE(reached.at("warnings").empty()) << reached.at("warnings");
+  const nlohmann::json missed =
+      run_specimen("biaxial",
+                   elastic_and({"Run/End shortening=2e-5", "Servo walls/Ramp=0.5",
+                                "Servo walls/Gain=0.001"}),
+                   folder.path("missed"));
+  ASSERT_EQ(missed.at("warnings").size(), 1u) << missed.at("warnings");
+  EXPECT_NE(missed.at("warnings")[0].get<std::string>().find("confinement"),
+            std::string::npos);
+}
