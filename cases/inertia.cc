@@ -43,8 +43,19 @@ StiffnessSums grain_stiffness(const Scene &scene)
   return sums;
 }
 
-double rescale_density(Scene &scene)
+double after_search(Scene &scene)
 {
+  discrete::Grains &all = scene.grains->state.grains;
+  for (std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
+    for (discrete::Wall &wall : *walls)
+    {
+      find_wall_contacts(all, wall, scene.contacts.margin, scene.grains->modulus);
+      if (scene.bridging)
+        for (discrete::WallContact &contact : wall.contacts)
+          if (contact.late)
+            contact.weight =
+                scene.bridging->weight().grains(all.reference(contact.grain));
+    }
   if (scene.parameters.run.driver != "quasi-static")
     return 0.;
   discrete::Grains &grains = scene.grains->state.grains;

@@ -17,11 +17,11 @@ discrete::StiffnessSums grain_stiffness(const Scene &scene);
 /// \return the step that they allow, the deck's safety factor included [s]
 double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
 
-/// Inertial masses of a quasi-static run for the contacts that grains carry now, so that
-/// none is too light for the step: discrete::rescale_density(), and the bridging domain
-/// knows of it.
-/// \return kinetic energy lost [J]
-double rescale_density(Scene &scene);
+/// What follows a search for contacts: walls hold the grains that have come near them,
+/// and the inertial masses of a quasi-static run follow the contacts that grains carry
+/// now, so that none is too light for the step (discrete::rescale_density()); the
+/// bridging domain knows of it. \return kinetic energy lost [J]
+double after_search(Scene &scene);
 
 /// Time of an axial wave along the layer with its inertial masses [s].
 double layer_transit(const Scene &scene);

@@ -37,7 +37,7 @@ enum Rank
 void add_contacts(Scene &scene)
 {
   GrainState &state = scene.grains->state;
-  const auto rescale = [&scene] { return rescale_density(scene); };
+  const auto rescale = [&scene] { return after_search(scene); };
   scene.simulation->add(std::make_unique<ContactSearch>(state, scene.contacts, rescale),
                         {Stage::forces}, rank_search, "search",
                         reason_for(scene.parameters, "search"));

@@ -54,6 +54,38 @@ void ServoWalls::visit_state(StateArchive &archive)
   visit_walls(archive, "servo walls", walls_);
 }
 
+namespace
+{
+/// Contacts found in the course of the run; the others are made with the scene.
+void visit_late_contacts(StateArchive &archive,
+                         const std::string &name,
+                         discrete::Wall &wall)
+{
+  std::vector<std::int64_t> grains;
+  std::vector<double> values;
+  if (!archive.is_loading())
+    for (const discrete::WallContact &contact : wall.contacts)
+      if (contact.late)
+      {
+        grains.push_back(contact.grain);
+        values.insert(values.end(), {contact.stiffness, contact.weight});
+      }
+  archive.array(name + "/late_grains", grains);
+  archive.array(name + "/late_values", values);
+  if (!archive.is_loading())
+    return;
+  for (std::size_t k = 0; k < grains.size(); ++k)
+  {
+    discrete::WallContact contact;
+    contact.grain = static_cast<std::int32_t>(grains[k]);
+    contact.stiffness = values[2 * k];
+    contact.weight = values[2 * k + 1];
+    contact.late = true;
+    insert_contact(wall, contact);
+  }
+}
+} // namespace
+
 void visit_walls(StateArchive &archive,
                  const std::string &group,
                  std::vector<discrete::Wall> &walls)
@@ -64,6 +96,7 @@ void visit_walls(StateArchive &archive,
     archive.value(name + "/displacement", walls[w].displacement);
     archive.value(name + "/velocity", walls[w].velocity);
     archive.value(name + "/work", walls[w].work);
+    visit_late_contacts(archive, name, walls[w]);
   }
 }
 

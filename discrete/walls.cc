@@ -1,5 +1,7 @@
 #include "discrete/walls.h"
 
+#include <algorithm>
+
 namespace antiform::discrete
 {
 namespace
@@ -42,6 +44,40 @@ void install_wall_contacts(const Grains &grains,
     contact.stiffness = 2. * modulus[grains.region[i]];
     wall.contacts.push_back(contact);
   }
+}
+
+void insert_contact(Wall &wall, const WallContact &contact)
+{
+  wall.contacts.insert(std::upper_bound(wall.contacts.begin(), wall.contacts.end(),
+                                        contact,
+                                        [](const WallContact &a, const WallContact &b)
+                                        { return a.grain < b.grain; }),
+                       contact);
+}
+
+void find_wall_contacts(const Grains &grains,
+                        Wall &wall,
+                        const double reach,
+                        const std::vector<double> &modulus)
+{
+  std::vector<WallContact> found;
+  auto held = wall.contacts.begin();
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const auto grain = static_cast<std::int32_t>(i);
+    while (held != wall.contacts.end() && held->grain < grain)
+      ++held;
+    if ((held != wall.contacts.end() && held->grain == grain) ||
+        gap_to(wall, grains, grain) > reach)
+      continue;
+    WallContact contact;
+    contact.grain = grain;
+    contact.stiffness = 2. * modulus[grains.region[i]];
+    contact.late = true;
+    found.push_back(contact);
+  }
+  for (const WallContact &contact : found)
+    insert_contact(wall, contact);
 }
 
 void add_wall_forces(Grains &grains, Wall &wall)

@@ -16,6 +16,7 @@ struct WallContact
   double stiffness = 0.;     ///< k_n [N/m]: 2 E* (A = 2 R, L = R)
   double weight = 1.;        ///< bridging weight of the grain [-]
   double initial_gap = 0.;   ///< elastic gap that the prestress stands for, <= 0 [m]
+  bool late = false;         ///< found in the course of the run
 };
 
 /// Rigid frictionless wall: a straight line that moves along its normal.
@@ -40,6 +41,16 @@ void install_wall_contacts(const Grains &grains,
                            double reach,
                            double installation_gap,
                            const std::vector<double> &modulus);
+
+/// Let @p wall hold grains too that have come within @p reach of it since [m], at
+/// contact. Grains that it holds already stay as they are.
+void find_wall_contacts(const Grains &grains,
+                        Wall &wall,
+                        double reach,
+                        const std::vector<double> &modulus);
+
+/// Insert a contact in the order of grains.
+void insert_contact(Wall &wall, const WallContact &contact);
 
 /// Add the wall's forces to the grains; sets reaction.
 void add_wall_forces(Grains &grains, Wall &wall);

@@ -129,4 +129,32 @@ TEST(Wall, WorkOfASlowPushIsTheEnergyOfTheSpring)
   EXPECT_NEAR(run.walls[0].work, 0.5 * 2000. * 1e-4, 1e-13); // round-off
   EXPECT_NEAR(run.energies().strain, run.walls[0].work, 1e-13);
 }
+
+TEST(Walls, HoldGrainsThatComeToThemLater)
+{
+  Grains grains;
+  grains.add({0.5, 0.}, 0.5, 1., 0); // at the wall
+  grains.add({2., 3.}, 0.5, 1., 0);  // a diameter and a half away
+  grains.add({0.45, 5.}, 0.5, 1., 0);
+  Wall wall;
+  wall.normal = {1., 0.};
+  install_wall_contacts(grains, wall, 0.2, 0.3, {1e3});
+  ASSERT_EQ(wall.contacts.size(), 2u);
+  find_wall_contacts(grains, wall, 0.2, {1e3});
+  EXPECT_EQ(wall.contacts.size(), 2u); // nothing has come nearer
+
+  grains.displacement_x[1] = -1.4;
+  find_wall_contacts(grains, wall, 0.2, {1e3});
+  ASSERT_EQ(wall.contacts.size(), 3u);
+  EXPECT_EQ(wall.contacts[1].grain, 1); // in the order of grains
+  EXPECT_TRUE(wall.contacts[1].late);
+  EXPECT_FALSE(wall.contacts[2].late);
+  add_wall_forces(grains, wall);
+  EXPECT_EQ(grains.force_x[1], 0.); // 0.1 away
+
+  grains.displacement_x[1] = -1.52; // 0.02 into the wall: 2 E* times that
+  add_wall_forces(grains, wall);
+  EXPECT_NEAR(grains.force_x[1], 2e3 * 0.02, 1e-9);
+  EXPECT_EQ(grains.force_x[2], 0.); // its overlap was there when the wall was made
+}
 } // namespace antiform::discrete::test
