@@ -101,14 +101,11 @@ void write_joints(const std::string &path, const coupling::GrainState &state)
       const Vec2 force = (-1. / w) * Vec2{joints.force[j].x, joints.force[j].y};
       normal.values.push_back(dot(force, n)); // tension positive
       shear.values.push_back(dot(force, perpendicular(n)));
-      double left = joints.groups[g].law.n_elements;
-      if (joints.damage[j] >= 0)
-      {
-        const auto &bond = joints.damaged[joints.damage[j]].bond;
-        left = static_cast<double>(
-            std::count(bond.begin(), bond.end(), discrete::Bond::bonded));
-      }
-      bonds.values.push_back(left);
+      const int n_elements = joints.groups[g].law.n_elements;
+      int left = n_elements;
+      for (int e = 0; joints.damage[j] >= 0 && e < n_elements; ++e)
+        left -= joints.damaged.bond(joints.damage[j], e) != discrete::Bond::bonded;
+      bonds.values.push_back(static_cast<double>(left));
       group.values.push_back(static_cast<double>(g));
     }
   coupling::write_lines_vtu(path, grain_centres(grains), lines,

@@ -29,12 +29,13 @@ double crack_density(const Scene &scene)
 {
   double sum = 0.;
   const discrete::Joints &joints = scene.grains->state.joints;
-  for (const discrete::DamagedJoint &damaged : joints.damaged)
+  const discrete::DamagedJoints &damaged = joints.damaged;
+  for (std::size_t k = 0; k < damaged.size(); ++k)
   {
-    const double a =
-        joints.half_length[damaged.joint] / static_cast<double>(damaged.bond.size());
-    for (const discrete::Bond bond : damaged.bond)
-      sum += bond != discrete::Bond::bonded ? a * a : 0.;
+    const int n = joints.groups[damaged.group[k]].law.n_elements;
+    const double a = joints.half_length[damaged.joint[k]] / n;
+    for (int e = 0; e < n; ++e)
+      sum += damaged.bond(k, e) != discrete::Bond::bonded ? a * a : 0.;
   }
   return sum / (scene.geometry.length() * scene.geometry.thickness());
 }

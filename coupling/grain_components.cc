@@ -1,5 +1,7 @@
 #include "coupling/grain_components.h"
 
+#include "discrete/joint_damage.h"
+
 #include <cmath>
 
 namespace antiform::coupling
@@ -40,8 +42,8 @@ void Bonds::run(const Stage, const Clock &clock)
 {
   std::vector<Crack> found;
   const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
-  evaluate_bonds(state_.grains, state_.joints, now, state_.breaking ? &found : nullptr);
-  sum_joint_forces(state_.grains, state_.joints);
+  evaluate_bonds(state_.grains, state_.joints, now, state_.breaking ? &found : nullptr,
+                 clock.sample_due);
   if (found.empty())
     return;
   const bool first = state_.cracks.empty();
@@ -63,22 +65,23 @@ namespace
 /// Broken joints as flat arrays, and back.
 void visit_damaged(StateArchive &archive, Joints &joints)
 {
+  DamagedJoints &damaged = joints.damaged;
   std::vector<std::int64_t> joint, bond, removed;
   std::vector<double> values;
+  const auto n_elements = [&](const std::size_t k)
+  { return joints.groups[damaged.group[k]].law.n_elements; };
   if (!archive.is_loading())
-    for (const DamagedJoint &damaged : joints.damaged)
+    for (std::size_t k = 0; k < damaged.size(); ++k)
     {
-      joint.push_back(static_cast<std::int64_t>(damaged.joint));
-      removed.push_back(damaged.removed ? 1 : 0);
-      for (std::size_t e = 0; e < damaged.bond.size(); ++e)
+      joint.push_back(damaged.joint[k]);
+      removed.push_back(damaged.removed[k]);
+      for (int e = 0; e < n_elements(k); ++e)
       {
-        bond.push_back(static_cast<std::int64_t>(damaged.bond[e]));
-        for (const double v :
-             {damaged.slip[e], damaged.shear_stress[e], damaged.normal_stress[e]})
-          values.push_back(v);
+        bond.push_back(static_cast<std::int64_t>(damaged.bond(k, e)));
+        values.push_back(damaged.slip(k, e));
       }
-      for (const double v : {damaged.gap, damaged.shear, damaged.rotation,
-                             damaged.slip_energy, damaged.fracture_energy})
+      for (const double v : {damaged.gap[k], damaged.shear[k], damaged.rotation[k],
+                             damaged.slip_energy[k], damaged.fracture_energy[k]})
         values.push_back(v);
     }
   archive.array("broken/joint", joint);
@@ -87,27 +90,21 @@ void visit_damaged(StateArchive &archive, Joints &joints)
   archive.array("broken/values", values);
   if (!archive.is_loading())
     return;
-  joints.damaged.clear();
+  damaged.clear();
   auto next_bond = bond.begin();
   auto next = values.begin();
-  for (std::size_t k = 0; k < joint.size(); ++k)
+  for (std::size_t i = 0; i < joint.size(); ++i)
   {
-    DamagedJoint damaged;
-    damaged.joint = static_cast<std::size_t>(joint[k]);
-    damaged.removed = removed[k] != 0;
-    const int n = joints.group_of(damaged.joint).law.n_elements;
-    for (int e = 0; e < n; ++e)
+    const std::size_t k = add_damaged(joints, static_cast<std::size_t>(joint[i]));
+    damaged.removed[k] = removed[i] != 0 ? 1 : 0;
+    for (int e = 0; e < n_elements(k); ++e)
     {
-      damaged.bond.push_back(static_cast<Bond>(*next_bond++));
-      damaged.slip.push_back(*next++);
-      damaged.shear_stress.push_back(*next++);
-      damaged.normal_stress.push_back(*next++);
+      damaged.set_bond(k, e, static_cast<Bond>(*next_bond++));
+      damaged.set_slip(k, e, *next++);
     }
-    for (double *v : {&damaged.gap, &damaged.shear, &damaged.rotation,
-                      &damaged.slip_energy, &damaged.fracture_energy})
-      *v = *next++;
-    joints.damage[damaged.joint] = static_cast<std::int32_t>(k);
-    joints.damaged.push_back(damaged);
+    for (std::vector<double> *v : {&damaged.gap, &damaged.shear, &damaged.rotation,
+                                   &damaged.slip_energy, &damaged.fracture_energy})
+      (*v)[k] = *next++;
   }
 }
 

@@ -32,7 +32,7 @@ JointOfPair joint_of_pair(const Grains &grains,
     if (joints.first[joint] != j && joints.second[joint] != j)
       continue;
     const std::int32_t damage = joints.damage[joint];
-    const bool removed = damage >= 0 && joints.damaged[damage].removed;
+    const bool removed = damage >= 0 && joints.damaged.removed[damage] != 0;
     return {removed ? 2 : 1, joints.length[joint] - grains.radius[i] - grains.radius[j]};
   }
   return {};
@@ -73,10 +73,10 @@ void search_contacts(const Grains &grains, const Joints &joints, Contacts &conta
   double reach = contacts.margin;
   for (const Contacts::Installed &pair : contacts.installed)
     reach = std::max(reach, pair.reference_gap + contacts.margin);
-  for (const DamagedJoint &damaged : joints.damaged)
-    if (damaged.removed)
+  for (std::size_t k = 0; k < joints.damaged.size(); ++k)
+    if (joints.damaged.removed[k])
     {
-      const std::size_t j = damaged.joint;
+      const std::size_t j = joints.damaged.joint[k];
       reach = std::max(reach, joints.length[j] - grains.radius[joints.first[j]] -
                                   grains.radius[joints.second[j]] + contacts.margin);
     }

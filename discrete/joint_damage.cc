@@ -1,28 +1,49 @@
 #include "discrete/joint_damage.h"
 
+#include "discrete/joint_kernel.h"
+#include "discrete/joint_law.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace antiform::discrete
 {
+ElementConstants element_constants(const FlatJoint &law, const bool look_at_strengths)
+{
+  const bool tested = look_at_strengths && law.breakable;
+  constexpr double none = std::numeric_limits<double>::infinity();
+  return {1. / law.stiffness_ratio,     static_cast<double>(law.n_elements),
+          law.element_moment ? 1. : 0., law.residual_friction,
+          law.residual_cohesion,        tested ? law.tensile_strength : none,
+          tested ? law.cohesion : none, tested ? law.tan_friction : 0.};
+}
+
 namespace
 {
-struct ElementPlace
+ElementLaw<double> element_law(const Joints &joints,
+                               const std::size_t j,
+                               const FlatJoint &flat,
+                               const bool look_at_strengths)
 {
-  double a, b; ///< ends along the tangent from the joint's centre [m]
-};
-
-ElementPlace
-element_place(const Joints &joints, const std::size_t joint, const int n, const int e)
-{
-  const double R = joints.half_length[joint], l = 2. * R / n;
-  return {-R + e * l, e + 1 == n ? R : -R + (e + 1) * l};
+  const ElementConstants c = element_constants(flat, look_at_strengths);
+  ElementLaw<double> law;
+  law.normal_stiffness = joints.stiffness[j];
+  law.shear_stiffness = law.normal_stiffness * c.shear_ratio;
+  law.half_length = joints.half_length[j];
+  law.n_elements = c.n_elements;
+  law.element_length = 2. * law.half_length / law.n_elements;
+  law.moment = c.moment;
+  law.residual_friction = c.residual_friction;
+  law.residual_cohesion = c.residual_cohesion;
+  law.tensile_strength = c.tensile_strength;
+  law.cohesion = c.cohesion;
+  law.tan_friction = c.tan_friction;
+  return law;
 }
 
 /// Share of the step, from its start, at which a quantity that goes linearly from @p old
-/// to
-/// @p now reaches @p limit; infinity when it does not, 0 when it was there already.
+/// to @p now reaches @p limit; infinity when it does not, 0 when it was there already.
 double share_at_limit(const double old, const double now, const double limit)
 {
   if (now < limit)
@@ -34,7 +55,7 @@ Crack make_crack(const Grains &grains,
                  const Joints &joints,
                  const std::size_t j,
                  const int e,
-                 const ElementPlace &place,
+                 const Stretch<double> &place,
                  const Bond mode,
                  const StepTime &time)
 {
@@ -69,65 +90,24 @@ Crack make_crack(const Grains &grains,
   return crack;
 }
 
-/// Mean stresses over an element for a trial deformation.
-struct TrialStress
+/// Mean stresses over a bonded element.
+struct MeanStress
 {
   double normal, shear;
 };
-TrialStress bonded_stress(const Joints &joints,
-                          const FlatJoint &law,
-                          const std::size_t j,
-                          const ElementPlace &place,
-                          const double slip,
-                          const JointDeformation &d)
+MeanStress bonded_stress(const ElementLaw<double> &law,
+                         const Stretch<double> &place,
+                         const double slip,
+                         const Deformation<double> &d)
 {
-  const double k = joints.stiffness[j], centre = 0.5 * (place.a + place.b);
-  return {k * (d.gap - d.rotation * centre), k / law.stiffness_ratio * (d.shear - slip)};
-}
-
-/// Shear of a broken element that is closed over @p active of its length now and was over
-/// @p old_active at the last step, its normal force being @p normal_force now. The force
-/// is k_s times closed length times elastic slip. What closes further carries nothing at
-/// first; what opens gives up its share, as sliding under a vanishing limit.
-struct Rub
-{
-  double force = 0.;      ///< [N]
-  double dissipated = 0.; ///< [J]
-};
-Rub rub(const double k_s,
-        const double limit,
-        const double active,
-        const double old_active,
-        const double shear,
-        const double old_shear,
-        double &slip)
-{
-  Rub result;
-  double stretch = old_shear - slip;
-  const double stored = 0.5 * k_s * old_active * stretch * stretch;
-  if (active > old_active)
-    stretch *= old_active / active;
-  const double old_force = std::abs(k_s * active * stretch);
-  result.dissipated = stored - 0.5 * k_s * active * stretch * stretch;
-  slip = old_shear - stretch;
-  if (active == 0.)
-  {
-    slip = shear; // open: carries nothing, remembers where it stands
-    return result;
-  }
-  result.force = k_s * active * (shear - slip);
-  if (std::abs(result.force) > limit)
-  {
-    const double increment = (std::abs(result.force) - limit) / (k_s * active);
-    slip += std::copysign(increment, result.force);
-    result.force = std::copysign(limit, result.force);
-    result.dissipated += 0.5 * (old_force + limit) * increment;
-  }
-  return result;
+  return {law.normal_stiffness * (d.gap - d.rotation * (0.5 * (place.a + place.b))),
+          law.shear_stiffness * (d.shear - slip)};
 }
 
 /// Which strength a bonded element passes in this step, and passes first.
-Bond break_mode(const FlatJoint &law, const TrialStress &old, const TrialStress &now)
+Bond break_mode(const ElementLaw<double> &law,
+                const MeanStress &old,
+                const MeanStress &now)
 {
   const double tension = share_at_limit(old.normal, now.normal, law.tensile_strength);
   // Coulomb: |tau| + sigma tan(phi) = c; |tau| is linear between states of one sign, and
@@ -141,222 +121,131 @@ Bond break_mode(const FlatJoint &law, const TrialStress &old, const TrialStress 
     return Bond::bonded;
   return tension <= shear ? Bond::broken_in_tension : Bond::broken_in_shear;
 }
-/// What an element gives to its joint.
-struct ElementForce
-{
-  double normal = 0., shear = 0., moment = 0.;
-};
 
-/// An element's two evaluations: what it carries, and what it would have carried
-/// unbroken.
-struct Evaluation
+/// Energy stored in an element [J].
+double element_energy(const ElementLaw<double> &law,
+                      const Stretch<double> &place,
+                      const Deformation<double> &d,
+                      const double slip,
+                      const bool bonded)
 {
-  ElementForce force;
-  double energy = 0.;
-};
-Evaluation bonded_element(const double k_n,
-                          const double k_s,
-                          const ElementPlace &place,
-                          const double slip,
-                          const JointDeformation &d,
-                          const bool element_moment)
-{
-  const ElementResultant normal =
-      element_resultant(k_n, d.gap, d.rotation, place.a, place.b, true, element_moment);
-  const double full = place.b - place.a, shear = k_s * full * (d.shear - slip);
-  return {{normal.normal_force, shear, normal.moment},
-          normal.strain_energy + 0.5 * shear * shear / (k_s * full)};
+  const ElementResultant normal = element_resultant(
+      law.normal_stiffness, d.gap, d.rotation, place.a, place.b, bonded, law.moment > 0.);
+  const double stretch = d.shear - slip;
+  return normal.strain_energy +
+         0.5 * law.shear_stiffness * normal.active_length * stretch * stretch;
 }
 
-/// \param[in,out] slip of the element
-/// \param[out] dissipated by sliding in this step
-Evaluation broken_element(const double k_n,
-                          const double k_s,
-                          const FlatJoint &law,
-                          const ElementPlace &place,
-                          const JointDeformation &now,
-                          const JointDeformation &before,
-                          const bool just_broken,
-                          double &slip,
-                          double &dissipated)
-{
-  const auto resultant = [&](const JointDeformation &d)
-  {
-    return element_resultant(k_n, d.gap, d.rotation, place.a, place.b, false,
-                             law.element_moment);
-  };
-  const ElementResultant normal = resultant(now);
-  const double active = normal.active_length;
-  const double old_active = just_broken ? active : resultant(before).active_length;
-  double old_shear = before.shear;
-  if (old_active == 0. && active > 0.)
-  {
-    // Closes within the step: sticks from there on.
-    const double old_gap = std::min(before.gap - before.rotation * place.a,
-                                    before.gap - before.rotation * place.b);
-    const double new_gap =
-        std::min(now.gap - now.rotation * place.a, now.gap - now.rotation * place.b);
-    old_shear = now.shear - new_gap / (new_gap - old_gap) * (now.shear - before.shear);
-    slip = old_shear;
-  }
-  const double limit = law.residual_friction * std::abs(normal.normal_force) +
-                       law.residual_cohesion * active;
-  const Rub friction = rub(k_s, limit, active, old_active, now.shear, old_shear, slip);
-  dissipated = friction.dissipated;
-  const double energy =
-      normal.strain_energy +
-      (active > 0. ? 0.5 * friction.force * friction.force / (k_s * active) : 0.);
-  return {{normal.normal_force, friction.force, normal.moment}, energy};
-}
-
-/// Energy that a break in this step takes: the drop, less the work that the lost force
+/// Energy that a break in this step takes: the @p drop, less the work that the lost force
 /// did not do in the second half of the step (the trapezoidal rule of the stepping loop).
-double fracture_energy(const Evaluation &unbroken,
-                       const Evaluation &broken,
-                       const JointDeformation &now,
-                       const JointDeformation &before)
+double fracture_energy(const double drop,
+                       const ElementSums<double> &unbroken,
+                       const ElementSums<double> &broken,
+                       const Deformation<double> &now,
+                       const Deformation<double> &before)
 {
-  const ElementForce &u = unbroken.force, &b = broken.force;
-  return unbroken.energy - broken.energy -
-         0.5 * ((u.normal - b.normal) * (now.gap - before.gap) +
-                (u.shear - b.shear) * (now.shear - before.shear) -
-                (u.moment - b.moment) * (now.rotation - before.rotation));
-}
-
-/// Force on the second grain, -F n - S t, and torques: it acts at the middle of the
-/// faces.
-JointForce on_grains(const Grains &grains,
-                     const Joints &joints,
-                     const std::size_t j,
-                     const ElementForce &sum,
-                     const JointDeformation &now)
-{
-  const std::size_t one = joints.first[j], two = joints.second[j];
-  const double turn = 0.5 * (grains.rotation[one] + grains.rotation[two]);
-  const Vec2 n = rotated({joints.normal_x[j], joints.normal_y[j]}, turn);
-  const double half = 0.5 * (grains.rotation[two] - grains.rotation[one]);
-  const double face_cos = std::cos(half), face_sin = std::sin(half);
-  const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
-  const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
-  double gap = now.gap, shear = now.shear; // levers are geometric: without prestress
-  if (!joints.initial_gap.empty())
-  {
-    gap -= joints.initial_gap[j];
-    shear -= joints.initial_shear[j];
-  }
-  const double F = sum.normal, S = sum.shear, M = sum.moment;
-  return {S * n.y - F * n.x, -F * n.y - S * n.x,
-          (r1 * face_cos + 0.5 * gap) * S - (0.5 * shear - r1 * face_sin) * F - M,
-          (r2 * face_cos + 0.5 * gap) * S - (0.5 * shear + r2 * face_sin) * F + M};
+  return drop -
+         0.5 * ((unbroken.normal - broken.normal) * (now.gap - before.gap) +
+                (unbroken.shear - broken.shear) * (now.shear - before.shear) -
+                (unbroken.moment - broken.moment) * (now.rotation - before.rotation));
 }
 } // namespace
 
-DamagedJoint make_damaged(const Joints &joints, const std::size_t joint)
+std::size_t add_damaged(Joints &joints, const std::size_t joint)
 {
-  const int n = joints.group_of(joint).law.n_elements;
-  DamagedJoint damaged;
-  damaged.joint = joint;
-  damaged.bond.assign(n, Bond::bonded);
-  damaged.slip.assign(n, 0.);
-  damaged.shear_stress.assign(n, 0.);
-  damaged.normal_stress.assign(n, 0.);
-  return damaged;
+  const std::size_t g = joints.group_number(joint);
+  joints.damage[joint] = static_cast<std::int32_t>(joints.damaged.size());
+  return joints.damaged.append(joint, g, joints.groups[g].law.n_elements);
 }
 
 void evaluate_damaged(const Grains &grains,
                       const Joints &joints,
-                      DamagedJoint &damaged,
-                      const JointDeformation &now,
-                      const JointDeformation &before,
+                      DamagedJoints &damaged,
+                      const std::size_t k,
+                      const JointDeformation &before_step,
                       const StepTime &time,
                       std::vector<Crack> *cracks)
 {
-  const std::size_t j = damaged.joint;
-  const FlatJoint &law = joints.group_of(j).law;
+  const std::size_t j = damaged.joint[k], one = joints.first[j], two = joints.second[j];
+  const FlatJoint &flat = joints.groups[damaged.group[k]].law;
+  const ElementLaw<double> law = element_law(joints, j, flat, cracks != nullptr);
   const double weight = joints.weight.empty() ? 1. : joints.weight[j];
-  const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
-  ElementForce sum;
-  bool any_bonded = false;
-  double smallest_gap = std::numeric_limits<double>::infinity();
+  const Deformation<double> before{before_step.gap, before_step.shear,
+                                   before_step.rotation};
+  const JointDeformation d = deformation(grains, joints, j);
+  const Deformation<double> now{d.gap, d.shear, d.rotation};
+  ElementSums<double> sums;
 
-  for (int e = 0; e < law.n_elements; ++e)
+  for (int e = 0; e < flat.n_elements; ++e)
   {
-    const ElementPlace place = element_place(joints, j, law.n_elements, e);
-    double &slip = damaged.slip[e];
-    Evaluation element;
-    Bond mode = damaged.bond[e];
-    if (mode == Bond::bonded)
+    const Stretch<double> place = element(law, e);
+    const double slip = damaged.slip(k, e);
+    bool bonded = damaged.bond(k, e) == Bond::bonded;
+    ElementSums<double> carries;
+    double new_slip = add_element<false>(law, e, bonded, before, now, slip, carries);
+    const Bond mode = bonded ? break_mode(law, bonded_stress(law, place, slip, before),
+                                          bonded_stress(law, place, slip, now))
+                             : damaged.bond(k, e);
+    if (bonded && mode != Bond::bonded)
     {
-      element = bonded_element(k_n, k_s, place, slip, now, law.element_moment);
-      if (cracks != nullptr && law.breakable)
-        mode = break_mode(law, bonded_stress(joints, law, j, place, slip, before),
-                          bonded_stress(joints, law, j, place, slip, now));
+      bonded = false;
+      ElementSums<double> broken;
+      new_slip = add_element<true>(law, e, bonded, before, now, slip, broken);
+      const double drop = element_energy(law, place, now, slip, true) -
+                          element_energy(law, place, now, new_slip, false);
+      damaged.fracture_energy[k] +=
+          weight * fracture_energy(drop, carries, broken, now, before);
+      damaged.set_bond(k, e, mode);
+      cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
+      carries = broken;
+      carries.dissipated = 0.; // it is in the fracture energy
     }
-    if (mode != Bond::bonded)
-    {
-      const bool just_broken = damaged.bond[e] == Bond::bonded;
-      double dissipated = 0.;
-      const Evaluation broken = broken_element(k_n, k_s, law, place, now, before,
-                                               just_broken, slip, dissipated);
-      if (just_broken)
-      {
-        damaged.fracture_energy += weight * fracture_energy(element, broken, now, before);
-        damaged.bond[e] = mode;
-        cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
-      }
-      else
-        damaged.slip_energy += weight * dissipated;
-      element = broken;
-    }
-
-    const double full = place.b - place.a;
-    damaged.shear_stress[e] = element.force.shear / full;
-    damaged.normal_stress[e] = element.force.normal / full;
-    sum.normal += weight * element.force.normal;
-    sum.shear += weight * element.force.shear;
-    sum.moment += weight * element.force.moment;
-    any_bonded = any_bonded || mode == Bond::bonded;
-    smallest_gap = std::min({smallest_gap, now.gap - now.rotation * place.a,
-                             now.gap - now.rotation * place.b});
+    damaged.set_slip(k, e, new_slip);
+    sums.normal += carries.normal;
+    sums.shear += carries.shear;
+    sums.moment += carries.moment;
+    sums.dissipated += carries.dissipated;
+    sums.any_bonded |= bonded;
   }
 
-  damaged.gap = now.gap;
-  damaged.shear = now.shear;
-  damaged.rotation = now.rotation;
-  // Parted for good: the faces are half their length further apart than they were made,
-  // or have slid off one another.
-  const double R = joints.half_length[j];
-  const double made = joints.initial_gap.empty() ? 0. : joints.initial_gap[j];
-  if (!any_bonded &&
-      (smallest_gap > std::max(0., made) + R || std::abs(now.shear) > 2. * R))
+  damaged.slip_energy[k] += weight * sums.dissipated;
+  damaged.gap[k] = now.gap;
+  damaged.shear[k] = now.shear;
+  damaged.rotation[k] = now.rotation;
+  const double made =
+      joints.initial_gap.empty() ? 0. : std::max(0., joints.initial_gap[j]);
+  if (parts(law, sums, now, made))
   {
-    damaged.fracture_energy += strain_energy(joints, damaged);
-    damaged.removed = true;
-    damaged.force = {0., 0., 0., 0.};
+    damaged.fracture_energy[k] += strain_energy(joints, damaged, k);
+    damaged.removed[k] = 1;
+    damaged.force[k] = {0., 0., 0., 0.};
     return;
   }
-  damaged.force = on_grains(grains, joints, j, sum, now);
+  const InstalledFrame<double> at{joints.normal_x[j], joints.normal_y[j],
+                                  joints.length[j], joints.lever_difference[j]};
+  const JointGeometry<double> place =
+      joint_geometry(at, half_angles(grains.rotation[one], grains.rotation[two]),
+                     grains.displacement_x[two] - grains.displacement_x[one],
+                     grains.displacement_y[two] - grains.displacement_y[one]);
+  const JointResultant<double> resultant{weight * sums.normal, weight * sums.shear,
+                                         weight * sums.moment};
+  const GrainForces<double> f = grain_forces(resultant, at, place);
+  damaged.force[k] = {f.x, f.y, f.torque1, f.torque2};
 }
 
-double strain_energy(const Joints &joints, const DamagedJoint &damaged)
+double
+strain_energy(const Joints &joints, const DamagedJoints &damaged, const std::size_t k)
 {
-  if (damaged.removed)
+  if (damaged.removed[k])
     return 0.;
-  const std::size_t j = damaged.joint;
-  const FlatJoint &law = joints.group_of(j).law;
-  const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
+  const std::size_t j = damaged.joint[k];
+  const FlatJoint &flat = joints.groups[damaged.group[k]].law;
+  const ElementLaw<double> law = element_law(joints, j, flat, false);
   double energy = 0.;
-  for (int e = 0; e < law.n_elements; ++e)
-  {
-    const ElementPlace place = element_place(joints, j, law.n_elements, e);
-    const ElementResultant normal =
-        element_resultant(k_n, damaged.gap, damaged.rotation, place.a, place.b,
-                          damaged.bond[e] == Bond::bonded, law.element_moment);
-    energy += normal.strain_energy;
-    const double full = place.b - place.a, tau = damaged.shear_stress[e];
-    if (normal.active_length > 0.)
-      energy += 0.5 * tau * tau * full * full / (k_s * normal.active_length);
-  }
+  for (int e = 0; e < flat.n_elements; ++e)
+    energy += element_energy(law, element(law, e),
+                             {damaged.gap[k], damaged.shear[k], damaged.rotation[k]},
+                             damaged.slip(k, e), damaged.bond(k, e) == Bond::bonded);
   return energy * (joints.weight.empty() ? 1. : joints.weight[j]);
 }
 
@@ -368,15 +257,13 @@ void break_element(const Grains &grains,
 {
   const JointDeformation now = deformation(grains, joints, joint);
   if (joints.damage[joint] < 0)
-  {
-    joints.damage[joint] = static_cast<std::int32_t>(joints.damaged.size());
-    joints.damaged.push_back(make_damaged(joints, joint));
-  }
-  DamagedJoint &damaged = joints.damaged[joints.damage[joint]];
-  evaluate_damaged(grains, joints, damaged, now, now, {}, nullptr);
-  const double before = strain_energy(joints, damaged);
-  damaged.bond[element] = mode;
-  evaluate_damaged(grains, joints, damaged, now, now, {}, nullptr);
-  damaged.fracture_energy += before - strain_energy(joints, damaged);
+    add_damaged(joints, joint);
+  DamagedJoints &damaged = joints.damaged;
+  const std::size_t k = joints.damage[joint];
+  evaluate_damaged(grains, joints, damaged, k, now, {}, nullptr);
+  const double before = strain_energy(joints, damaged, k);
+  damaged.set_bond(k, element, mode);
+  evaluate_damaged(grains, joints, damaged, k, now, {}, nullptr);
+  damaged.fracture_energy[k] += before - strain_energy(joints, damaged, k);
 }
 } // namespace antiform::discrete

@@ -4,24 +4,26 @@
 
 namespace antiform::discrete
 {
-/// The full flat-joint law for joints that have lost a bond (contact-law steps in the
-/// order tension, shear, friction; docs/theory/flat_joint.md). Serial over the elements
-/// of one joint; different joints may be evaluated at the same time.
+/// The full flat-joint law for one joint that has lost a bond (steps in the order
+/// tension, shear, friction; docs/theory/flat_joint.md), breaks included: the vector
+/// kernel leaves to it the joints in which something breaks.
 ///
 /// @p before is the deformation at the last step: it decides which of two strengths was
 /// reached first within the step, and from where on a closing element sticks.
+/// \param[in,out] damaged records of which number @p k is advanced
 /// \param[in,out] cracks new breaks are appended; null: no bond is tested
 void evaluate_damaged(const Grains &grains,
                       const Joints &joints,
-                      DamagedJoint &damaged,
-                      const JointDeformation &now,
+                      DamagedJoints &damaged,
+                      std::size_t k,
                       const JointDeformation &before,
                       const StepTime &time,
                       std::vector<Crack> *cracks);
 
-/// Record of an intact joint about to lose its first bond.
-DamagedJoint make_damaged(const Joints &joints, std::size_t joint);
+/// Record of intact joint @p joint, which is about to lose its first bond.
+/// \return its number
+std::size_t add_damaged(Joints &joints, std::size_t joint);
 
 /// Strain energy of a damaged joint, weighted [J].
-double strain_energy(const Joints &joints, const DamagedJoint &damaged);
+double strain_energy(const Joints &joints, const DamagedJoints &damaged, std::size_t k);
 } // namespace antiform::discrete

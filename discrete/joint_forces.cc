@@ -3,6 +3,8 @@
 #include "discrete/joints.h"
 #include "discrete/threading.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,191 +46,303 @@ IntactKernelInput kernel_input(Joints &joints,
   in.tensile_strength = tested ? law.tensile_strength : none;
   in.cohesion = tested ? law.cohesion : none;
   in.tan_friction = tested ? law.tan_friction : 0.;
-  in.force = joints.force.data();
   return in;
 }
-
-/// Deformation of a joint one step ago, from the half-step velocities that led here.
-JointDeformation deformation_before(const Grains &grains,
-                                    const Joints &joints,
-                                    const std::size_t j,
-                                    const double dt)
-{
-  Grains pair;
-  for (const std::int32_t i : {joints.first[j], joints.second[j]})
-  {
-    pair.add(grains.reference(i), grains.radius[i], 1., 0);
-    pair.displacement_x.back() = grains.displacement_x[i] - dt * grains.velocity_x[i];
-    pair.displacement_y.back() = grains.displacement_y[i] - dt * grains.velocity_y[i];
-    pair.rotation.back() = grains.rotation[i] - dt * grains.spin[i];
-  }
-  Joints one;
-  one.first = {0};
-  one.second = {1};
-  one.normal_x = {joints.normal_x[j]};
-  one.normal_y = {joints.normal_y[j]};
-  one.length = {joints.length[j]};
-  one.lever_difference = {joints.lever_difference[j]};
-  if (!joints.initial_gap.empty())
-  {
-    one.initial_gap = {joints.initial_gap[j]};
-    one.initial_shear = {joints.initial_shear[j]};
-    one.initial_rotation = {joints.initial_rotation[j]};
-  }
-  return deformation(pair, one, 0);
-}
-
-/// First breaks of joints that the vector kernel found over a strength, in joint order.
-void break_intact(const Grains &grains,
-                  Joints &joints,
-                  const JointGroup &group,
-                  const std::vector<std::int32_t> &over,
-                  const StepTime &now,
-                  std::vector<Crack> &cracks)
-{
-  for (const std::int32_t j : over)
-  {
-    if (joints.damage[j] >= 0)
-      continue; // its slot is overwritten by the full law
-    if (!group.law.breakable)
-    {
-      joints.would_break[j] = 1;
-      continue;
-    }
-    const std::size_t n_before = cracks.size();
-    DamagedJoint damaged = make_damaged(joints, j);
-    const JointDeformation before = deformation_before(grains, joints, j, now.dt);
-    evaluate_damaged(grains, joints, damaged, deformation(grains, joints, j), before, now,
-                     &cracks);
-    if (cracks.size() == n_before)
-      continue; // over by a rounding of the kernel's order of operations: not over
-    joints.damage[j] = static_cast<std::int32_t>(joints.damaged.size());
-    joints.damaged.push_back(damaged);
-  }
-}
-
 } // namespace
+
+DamagedKernelInput
+damaged_input(const Grains &grains, Joints &joints, const bool look_at_strengths)
+{
+  const auto pointer = [](const std::vector<double> &v)
+  { return v.empty() ? nullptr : v.data(); };
+  std::vector<ElementConstants> &laws = joints.work.laws;
+  laws.clear();
+  for (const JointGroup &group : joints.groups)
+    laws.push_back(element_constants(group.law, look_at_strengths));
+  DamagedJoints &damaged = joints.damaged;
+  DamagedKernelInput in{};
+  in.x = grains.displacement_x.data();
+  in.y = grains.displacement_y.data();
+  in.rotation = grains.rotation.data();
+  in.first = joints.first.data();
+  in.second = joints.second.data();
+  in.normal_x = joints.normal_x.data();
+  in.normal_y = joints.normal_y.data();
+  in.length = joints.length.data();
+  in.lever_difference = joints.lever_difference.data();
+  in.stiffness = joints.stiffness.data();
+  in.half_length = joints.half_length.data();
+  in.weight = pointer(joints.weight);
+  in.initial_gap = pointer(joints.initial_gap);
+  in.initial_shear = pointer(joints.initial_shear);
+  in.initial_rotation = pointer(joints.initial_rotation);
+  in.laws = laws.data();
+  in.n_elements = damaged.n_elements();
+  in.joint = damaged.joint.data();
+  in.group = damaged.group.data();
+  in.removed = damaged.removed.data();
+  in.bond = damaged.bonds();
+  in.slip = damaged.slips();
+  in.gap = damaged.gap.data();
+  in.shear = damaged.shear.data();
+  in.turn = damaged.rotation.data();
+  in.slip_energy = damaged.slip_energy.data();
+  in.force = damaged.force.data();
+  return in;
+}
 
 void evaluate_broken_joints(const Grains &grains,
                             Joints &joints,
                             const StepTime &now,
                             std::vector<Crack> *new_cracks)
 {
-  const auto n = static_cast<std::int64_t>(joints.damaged.size());
-  std::vector<std::vector<Crack>> found(n);
-#pragma omp parallel for schedule(static) if (n > 64)
-  for (std::int64_t k = 0; k < n; ++k)
-  {
-    DamagedJoint &damaged = joints.damaged[k];
-    if (damaged.removed)
-      continue;
-    const JointDeformation before{damaged.gap, damaged.shear, damaged.rotation};
-    evaluate_damaged(grains, joints, damaged, deformation(grains, joints, damaged.joint),
-                     before, now, new_cracks != nullptr ? &found[k] : nullptr);
-  }
-  if (new_cracks != nullptr)
-    for (const std::vector<Crack> &some : found)
-      new_cracks->insert(new_cracks->end(), some.begin(), some.end());
+  DamagedJoints &damaged = joints.damaged;
+  if (damaged.size() == 0)
+    return;
+  const KernelLevel &level = kernel_level();
+  const DamagedKernelInput in = damaged_input(grains, joints, new_cracks != nullptr);
+  const auto n_lots = static_cast<std::int64_t>((damaged.size() + 3) / 4);
+  std::vector<std::int32_t> &events = joints.work.events;
+  events.clear();
+#pragma omp parallel for schedule(static) if (n_lots > 128)
+  for (std::int64_t lot = 0; lot < n_lots; ++lot)
+    if (level.damaged(in, 4 * lot))
+    {
+#pragma omp critical(antiform_events)
+      events.push_back(static_cast<std::int32_t>(lot));
+    }
+  // Where something breaks, in order of damage.
+  std::sort(events.begin(), events.end());
+  for (const std::int32_t lot : events)
+    for (std::size_t k = 4 * lot; k < std::min<std::size_t>(4 * lot + 4, damaged.size());
+         ++k)
+      if (!damaged.removed[k])
+        evaluate_damaged(grains, joints, damaged, k,
+                         {damaged.gap[k], damaged.shear[k], damaged.rotation[k]}, now,
+                         new_cracks);
 }
 
 namespace
 {
-JointForce sum(const JointForce *force, const std::int32_t *next, const std::int32_t *end)
+/// Blocks of joints and who works on them. Grains are shared out by their joints.
+void make_parts(Joints &joints, const std::size_t n_grains, const std::size_t n_parts)
 {
-  JointForce total{0., 0., 0., 0.};
-  for (; next != end; ++next)
+  std::vector<JointPart> &parts = joints.work.parts;
+  parts.assign(n_parts, {});
+  std::size_t grain = 0;
+  for (std::size_t p = 0; p < n_parts; ++p)
   {
-    const JointForce &one = force[*next];
-    total.x += one.x;
-    total.y += one.y;
-    total.torque1 += one.torque1;
-    total.torque2 += one.torque2;
+    parts[p].begin = grain;
+    const std::size_t share = 2 * joints.size() * (p + 1) / n_parts;
+    while (
+        grain < n_grains &&
+        (p + 1 == n_parts || static_cast<std::size_t>(joints.grain_begin[grain]) < share))
+      ++grain;
+    parts[p].end = grain;
   }
-  return total;
+  for (JointPart &part : parts)
+    for (std::size_t g = 0; g < joints.groups.size(); ++g)
+      for (std::size_t j = joints.groups[g].begin; j < joints.groups[g].end;
+           j += intact_block)
+      {
+        const std::size_t end = std::min(j + intact_block, joints.groups[g].end);
+        std::size_t n_here = 0;
+        for (std::size_t k = j; k < end; ++k)
+          for (const std::int32_t i : {joints.first[k], joints.second[k]})
+            n_here += part.has(i) ? 1 : 0;
+        if (n_here > 0)
+          part.blocks.push_back({static_cast<std::int32_t>(j),
+                                 static_cast<std::int32_t>(end),
+                                 static_cast<std::int32_t>(g), n_here < 2 * (end - j)});
+      }
+}
+
+/// As the kernel does, for the grains of @p part only.
+void sum_own(const Joints &joints,
+             const JointPart &part,
+             const JointBlock &block,
+             const JointForce *force,
+             GrainSum *sums)
+{
+  for (std::int32_t j = block.begin; j < block.end; ++j)
+  {
+    const JointForce &f = force[j - block.begin];
+    if (part.has(joints.first[j]))
+    {
+      GrainSum &sum = sums[joints.first[j]];
+      sum.x -= f.x;
+      sum.y -= f.y;
+      sum.torque += f.torque1;
+    }
+    if (part.has(joints.second[j]))
+    {
+      GrainSum &sum = sums[joints.second[j]];
+      sum.x += f.x;
+      sum.y += f.y;
+      sum.torque += f.torque2;
+    }
+  }
+}
+
+/// Forces of a block's joints, intact ones from the kernel, the others from their
+/// records; intact ones over a strength are noted in the part that has their first grain.
+void block_forces(const KernelLevel &level,
+                  const Joints &joints,
+                  const JointBlock &block,
+                  JointPart &part,
+                  JointForce *force)
+{
+  const std::int32_t *const damage = joints.damage.data();
+  std::int32_t n_damaged = 0;
+  if (joints.damaged.size() > 0)
+    for (std::int32_t j = block.begin; j < block.end; ++j)
+      n_damaged += damage[j] >= 0 ? 1 : 0;
+  if (n_damaged < block.end - block.begin)
+  {
+    std::int32_t over[intact_block];
+    const std::size_t n_over = level.intact(joints.work.inputs[block.group], block.begin,
+                                            block.end, force, over);
+    for (std::size_t k = 0; k < n_over; ++k)
+      if (damage[over[k]] < 0 && part.has(joints.first[over[k]]))
+        part.over.emplace_back(over[k], force[over[k] - block.begin]);
+  }
+  if (n_damaged > 0)
+    for (std::int32_t j = block.begin; j < block.end; ++j)
+      if (damage[j] >= 0)
+        force[j - block.begin] = joints.damaged.force[damage[j]];
+}
+
+void sum_part(const KernelLevel &level,
+              Grains &grains,
+              Joints &joints,
+              JointPart &part,
+              const bool keep_forces)
+{
+  GrainSum *const sums = joints.work.sums.data();
+  std::fill(sums + part.begin, sums + part.end, GrainSum{0., 0., 0., 0.});
+  part.over.clear();
+  for (const JointBlock &block : part.blocks)
+  {
+    alignas(64) JointForce force[intact_block];
+    block_forces(level, joints, block, part, force);
+    if (block.shared)
+      sum_own(joints, part, block, force, sums);
+    else
+      level.sum(joints.first.data() + block.begin, joints.second.data() + block.begin,
+                force, block.end - block.begin, sums);
+    if (keep_forces)
+      for (std::int32_t j = block.begin; j < block.end; ++j)
+        if (part.has(joints.first[j]))
+          joints.force[j] = force[j - block.begin];
+  }
+  double *const x = grains.force_x.data(), *const y = grains.force_y.data();
+  double *const torque = grains.torque.data();
+  for (std::size_t i = part.begin; i < part.end; ++i)
+  {
+    x[i] = sums[i].x;
+    y[i] = sums[i].y;
+    torque[i] = sums[i].torque;
+  }
+}
+
+/// Put @p now in the place of the force @p before of joint @p j.
+void replace_force(Grains &grains,
+                   const Joints &joints,
+                   const std::size_t j,
+                   const JointForce &before,
+                   const JointForce &now)
+{
+  const std::size_t one = joints.first[j], two = joints.second[j];
+  grains.force_x[one] -= now.x - before.x;
+  grains.force_y[one] -= now.y - before.y;
+  grains.torque[one] += now.torque1 - before.torque1;
+  grains.force_x[two] += now.x - before.x;
+  grains.force_y[two] += now.y - before.y;
+  grains.torque[two] += now.torque2 - before.torque2;
+}
+
+/// First break of joint @p j, which the kernel found over a strength, if it breaks.
+void break_intact(Grains &grains,
+                  Joints &joints,
+                  const std::size_t j,
+                  const JointForce &intact,
+                  const StepTime &now,
+                  const bool keep_forces,
+                  std::vector<Crack> &cracks)
+{
+  if (!joints.group_of(j).law.breakable)
+  {
+    joints.would_break[j] = 1;
+    return;
+  }
+  const std::size_t n_before = cracks.size();
+  const std::size_t k = add_damaged(joints, j);
+  evaluate_damaged(grains, joints, joints.damaged, k,
+                   deformation_before(grains, joints, j, now.dt), now, &cracks);
+  if (cracks.size() == n_before)
+  {
+    // Over by a rounding of the kernel's order of operations: not over.
+    joints.damaged.pop_back();
+    joints.damage[j] = -1;
+    return;
+  }
+  replace_force(grains, joints, j, intact, joints.damaged.force[k]);
+  if (keep_forces)
+    joints.force[j] = joints.damaged.force[k];
 }
 } // namespace
 
-void sum_joint_forces(Grains &grains, Joints &joints)
-{
-  for (const DamagedJoint &damaged : joints.damaged)
-    joints.force[damaged.joint] = damaged.force;
-  const auto n = static_cast<std::int64_t>(grains.size());
-  const std::int32_t *const begin = joints.grain_begin.data();
-  const std::int32_t *const second = joints.grain_second.data();
-  const std::int32_t *const joint = joints.grain_joint.data();
-  const JointForce *const force = joints.force.data();
-  double *const x = grains.force_x.data(), *const y = grains.force_y.data();
-  double *const torque = grains.torque.data();
-#pragma omp parallel for schedule(static) if (n >= threads_from_grains)
-  for (std::int64_t i = 0; i < n; ++i)
-  {
-    // Whole records are added, without a branch on the end: half of the time is saved.
-    const JointForce as_first = sum(force, joint + begin[i], joint + second[i]);
-    const JointForce as_second = sum(force, joint + second[i], joint + begin[i + 1]);
-    x[i] = as_second.x - as_first.x;
-    y[i] = as_second.y - as_first.y;
-    torque[i] = as_first.torque1 + as_second.torque2;
-  }
-}
-
-void evaluate_bonds(const Grains &grains,
+void evaluate_bonds(Grains &grains,
                     Joints &joints,
                     const StepTime &now,
-                    std::vector<Crack> *new_cracks)
+                    std::vector<Crack> *new_cracks,
+                    const bool keep_forces)
 {
   const KernelLevel &level = kernel_level();
   const auto n_grains = static_cast<std::int64_t>(grains.size());
-  constexpr auto block_size = static_cast<std::int64_t>(intact_block);
-  static thread_local std::vector<GrainLine> lines; // scratch: refilled at every call
-  lines.resize(grains.size());
-  GrainLine *const line = lines.data();
-  std::vector<IntactKernelInput> input;
+  const bool threaded = n_grains >= threads_from_grains;
+  JointWork &work = joints.work;
+  const std::size_t n_parts =
+      threaded ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
+  if (work.parts.size() != n_parts || work.sums.size() != grains.size())
+    make_parts(joints, grains.size(), n_parts);
+  work.lines.resize(grains.size());
+  work.sums.resize(grains.size());
+  work.inputs.clear();
   for (const JointGroup &group : joints.groups)
-    input.push_back(kernel_input(joints, group, lines, new_cracks != nullptr));
-  std::vector<std::vector<std::int32_t>> over(joints.groups.size());
+    work.inputs.push_back(kernel_input(joints, group, work.lines, new_cracks != nullptr));
 
-  // One parallel region: threads wait for one another between lines and joints only.
-#pragma omp parallel if (n_grains >= threads_from_grains)
+    // One parallel region: threads wait for one another between lines and joints only.
+#pragma omp parallel if (threaded)
   {
 #pragma omp for schedule(static)
     for (std::int64_t block = 0; block < n_grains; block += 256)
       level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
-                  grains.rotation.data(), line, block, std::min(block + 256, n_grains));
-    for (std::size_t g = 0; g < joints.groups.size(); ++g)
-    {
-      const auto begin = static_cast<std::int64_t>(joints.groups[g].begin);
-      const auto end = static_cast<std::int64_t>(joints.groups[g].end);
-#pragma omp for schedule(static) nowait
-      for (std::int64_t block = begin; block < end; block += block_size)
-      {
-        std::int32_t block_over[intact_block];
-        const std::size_t n =
-            level.intact(input[g], block, std::min(block + block_size, end), block_over);
-        if (n > 0)
-        {
-#pragma omp critical(antiform_over)
-          over[g].insert(over[g].end(), block_over, block_over + n);
-        }
-      }
-    }
+                  grains.rotation.data(), work.lines.data(), block,
+                  std::min(block + 256, n_grains));
+#pragma omp for schedule(static, 1)
+    for (std::size_t p = 0; p < n_parts; ++p)
+      sum_part(level, grains, joints, work.parts[p], keep_forces);
   }
-  for (std::vector<std::int32_t> &some : over)
-    std::sort(some.begin(), some.end());
 
+  work.over.clear();
+  for (const JointPart &part : work.parts)
+    work.over.insert(work.over.end(), part.over.begin(), part.over.end());
+  std::sort(work.over.begin(), work.over.end(),
+            [](const auto &a, const auto &b) { return a.first < b.first; });
   if (new_cracks != nullptr)
-    for (std::size_t g = 0; g < joints.groups.size(); ++g)
-      if (!over[g].empty())
-        break_intact(grains, joints, joints.groups[g], over[g], now, *new_cracks);
+    for (const auto &[j, force] : work.over)
+      break_intact(grains, joints, j, force, now, keep_forces, *new_cracks);
 }
 
 void compute_joint_forces(Grains &grains,
                           Joints &joints,
                           const StepTime &now,
-                          std::vector<Crack> *new_cracks)
+                          std::vector<Crack> *new_cracks,
+                          const bool keep_forces)
 {
   evaluate_broken_joints(grains, joints, now, new_cracks);
-  evaluate_bonds(grains, joints, now, new_cracks);
-  sum_joint_forces(grains, joints);
+  evaluate_bonds(grains, joints, now, new_cracks, keep_forces);
 }
 
 JointEnergies joint_energies(const Grains &grains, const Joints &joints)
@@ -251,11 +365,11 @@ JointEnergies joint_energies(const Grains &grains, const Joints &joints)
                           full * full * moment_factor * d.rotation * d.rotation);
     }
   }
-  for (const DamagedJoint &damaged : joints.damaged)
+  for (std::size_t k = 0; k < joints.damaged.size(); ++k)
   {
-    energies.strain += strain_energy(joints, damaged);
-    energies.slip += damaged.slip_energy;
-    energies.fracture += damaged.fracture_energy;
+    energies.strain += strain_energy(joints, joints.damaged, k);
+    energies.slip += joints.damaged.slip_energy[k];
+    energies.fracture += joints.damaged.fracture_energy[k];
   }
   return energies;
 }

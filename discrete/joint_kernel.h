@@ -9,10 +9,17 @@ namespace antiform::discrete
 /// What a joint reads of a grain, one cache line: gathered once a joint, twice a grain.
 struct alignas(64) GrainLine
 {
-  double x, y;               ///< displacement [m]
-  double rotation;           ///< [rad]
+  double x, y;     ///< displacement [m]
+  double rotation; ///< [rad]
+  double unused;
   double half_cos, half_sin; ///< of half the rotation
-  double unused[3];
+  double unused_too[2];
+};
+
+/// Where the forces on a grain are summed up.
+struct alignas(32) GrainSum
+{
+  double x, y, torque, unused;
 };
 
 /// Constants of a group and bare pointers into the joints' arrays.
@@ -29,14 +36,15 @@ struct IntactKernelInput
   double tensile_strength; ///< infinity where strengths are not looked at
   double cohesion;
   double tan_friction;
-  JointForce *force;
 };
 
-/// Forces of the intact joints begin .. end - 1 of a group, at most intact_block of them.
+/// Forces of the intact joints begin .. end - 1 of a group, at most intact_block of them:
+/// @p force[0] is that of joint begin.
 /// \return number of entries written to @p over: joints beyond a strength, ascending
 using IntactKernel = std::size_t (*)(const IntactKernelInput &input,
                                      std::size_t begin,
                                      std::size_t end,
+                                     JointForce *force,
                                      std::int32_t *over);
 /// Fill grain lines begin .. end - 1.
 using LineKernel = void (*)(const double *x,
@@ -45,8 +53,52 @@ using LineKernel = void (*)(const double *x,
                             GrainLine *lines,
                             std::size_t begin,
                             std::size_t end);
+/// Add the forces of @p n joints to their grains' sums, joint by joint.
+using SumKernel = void (*)(const std::int32_t *first,
+                           const std::int32_t *second,
+                           const JointForce *force,
+                           std::size_t n,
+                           GrainSum *sums);
 
-/// Joints of one call: their columns, their grains and their results fit the first cache.
+/// Law of the elements of a group's joints.
+struct ElementConstants
+{
+  double shear_ratio; ///< 1 / kappa
+  double n_elements;
+  double moment; ///< 1, or 0 without element moments
+  double residual_friction, residual_cohesion;
+  double tensile_strength, cohesion, tan_friction; ///< infinity, 0: not looked at
+};
+/// @p look_at_strengths where the group's joints are breakable.
+ElementConstants element_constants(const FlatJoint &law, bool look_at_strengths);
+
+/// Bare pointers for the full law; the state is that of DamagedJoints.
+struct DamagedKernelInput
+{
+  const double *x, *y, *rotation; ///< of the grains
+  const std::int32_t *first, *second;
+  const double *normal_x, *normal_y, *length, *lever_difference, *stiffness, *half_length;
+  const double *weight;                                         ///< or null
+  const double *initial_gap, *initial_shear, *initial_rotation; ///< or null
+  const ElementConstants *laws;                                 ///< per group
+  int n_elements; ///< room for them in the state
+  const std::int32_t *joint, *group;
+  const unsigned char *removed;
+  const Bond *bond;
+  double *slip, *gap, *shear, *turn, *slip_energy;
+  JointForce *force;
+};
+
+/// @p look_at_strengths: breaks are wanted.
+DamagedKernelInput
+damaged_input(const Grains &grains, Joints &joints, bool look_at_strengths);
+
+/// The full law for four damaged joints, from number @p begin on. Nothing is changed, and
+/// true returned, if a bond of one of them is over a strength or a joint parts for good:
+/// evaluate_damaged() must take these four then.
+using DamagedKernel = bool (*)(const DamagedKernelInput &input, std::size_t begin);
+
+/// Joints of one call: their forces fit the first cache.
 constexpr std::size_t intact_block = 64;
 
 /// The kernels of one vector level; this translation unit is compiled once per level.
@@ -55,6 +107,8 @@ struct KernelLevel
   const char *name;
   IntactKernel intact;
   LineKernel lines;
+  SumKernel sum;
+  DamagedKernel damaged;
 };
 namespace level_baseline
 {

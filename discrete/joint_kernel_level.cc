@@ -1,54 +1,28 @@
-// Compiled once per vector level (ANTIFORM_LEVEL names the namespace). Nothing but
-// straight loops over local arrays here: g++ turns them into full-width vector code, and
-// every level does the same IEEE operations in the same order, so all give the same bits.
+// Compiled once per vector level (ANTIFORM_LEVEL names the namespace). Every level does
+// the same IEEE operations in the same order, so all give the same bits.
 #include "discrete/joint_kernel.h"
+#include "discrete/joint_law.h"
 
 namespace antiform::discrete::ANTIFORM_LEVEL
 {
 namespace
 {
-constexpr std::size_t N = intact_block;
+static_assert(sizeof(GrainLine) == 64 && sizeof(GrainSum) == 32 &&
+              sizeof(JointForce) == 32);
 
-/// Round to the nearest integer by the mantissa's last bit; |x| < 2^51.
-inline double nearest(const double x)
+/// Up to four entries; those beyond @p n repeat the first.
+inline Lanes load_some(const double *from, const std::size_t n)
 {
-  constexpr double magic = 6755399441055744.; // 1.5 * 2^52
-  return (x + magic) - magic;
+  if (n >= n_lanes)
+    return load(from);
+  Lanes v = Lanes{} + from[0];
+  for (std::size_t l = 1; l < n; ++l)
+    v[l] = from[l];
+  return v;
 }
-
-/// Sine and cosine of n <= N angles: reduction to |r| <= pi/4 in three parts of pi/2,
-/// then minimax polynomials (Cephes); error below 1 ulp or so for |angle| < 1e5.
-void sine_cosine(const double *angle, double *sine, double *cosine, const std::size_t n)
+inline Lanes gather(const double *from, const std::int32_t *at)
 {
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    const double quarter = nearest(angle[i] * 0.63661977236758134308);
-    const double r = ((angle[i] - quarter * 1.57079625129699707031) -
-                      quarter * 7.54978941586159635336e-8) -
-                     quarter * 5.39030285815811905290e-15;
-    const double z = r * r;
-    const double s = r + r * z *
-                             (-1.66666666666666307295e-1 +
-                              z * (8.33333333332211858878e-3 +
-                                   z * (-1.98412698295895385996e-4 +
-                                        z * (2.75573136213857245213e-6 +
-                                             z * (-2.50507477628578072866e-8 +
-                                                  z * 1.58962301576546568060e-10)))));
-    const double c = 1. - 0.5 * z +
-                     z * z *
-                         (4.16666666666665929218e-2 +
-                          z * (-1.38888888888730564116e-3 +
-                               z * (2.48015872888517045348e-5 +
-                                    z * (-2.75573141792967388112e-7 +
-                                         z * (2.08757008419747316778e-9 -
-                                              z * 1.13585365213876817300e-11)))));
-    const double quadrant = quarter - 4. * nearest(0.25 * quarter); // -2, -1, 0, 1 or 2
-    const bool odd = quadrant * quadrant == 1.;
-    const double sine_part = odd ? c : s, cosine_part = odd ? s : c;
-    const bool turned = quadrant * quadrant == 4.;
-    sine[i] = (turned || quadrant == -1.) ? -sine_part : sine_part;
-    cosine[i] = (turned || quadrant == 1.) ? -cosine_part : cosine_part;
-  }
+  return Lanes{from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
 }
 
 void lines(const double *x,
@@ -58,140 +32,262 @@ void lines(const double *x,
            const std::size_t begin,
            const std::size_t end)
 {
-  double half[N], sine[N], cosine[N];
-  for (std::size_t block = begin; block < end; block += N)
+  for (std::size_t i = begin; i < end; i += n_lanes)
   {
-    const std::size_t n = end - block < N ? end - block : N;
-    for (std::size_t i = 0; i < n; ++i)
-      half[i] = 0.5 * rotation[block + i];
-    sine_cosine(half, sine, cosine, n);
-    for (std::size_t i = 0; i < n; ++i)
-      line[block + i] = {x[block + i], y[block + i], rotation[block + i],
-                         cosine[i],    sine[i],      {}};
+    const std::size_t n = end - i < n_lanes ? end - i : n_lanes;
+    Lanes row[4] = {
+        load_some(x + i, n), load_some(y + i, n), load_some(rotation + i, n), {}};
+    Lanes sine, cosine;
+    sine_cosine<Lanes>(0.5 * row[2], sine, cosine);
+    transpose(row[0], row[1], row[2], row[3]);
+    const Lanes even = evens(cosine, sine), odd = odds(cosine, sine);
+    const Lanes half[4] = {lower_halves(even, Lanes{}), lower_halves(odd, Lanes{}),
+                           upper_halves(even, Lanes{}), upper_halves(odd, Lanes{})};
+    for (std::size_t l = 0; l < n; ++l)
+    {
+      store(&line[i + l].x, row[l]);
+      store(&line[i + l].half_cos, half[l]);
+    }
   }
 }
 
-/// Relative displacements and half angles of some joints' grains, as columns.
-struct alignas(64) Columns
+/// Motion of four joints' grains against one another.
+struct PairMotion
 {
-  double ux[N], uy[N], theta[N], c1[N], s1[N], c2[N], s2[N];
+  Lanes ux, uy, theta;
+  HalfAngles<Lanes> half;
 };
-
-void gather(const IntactKernelInput &in,
-            const std::size_t begin,
-            const std::size_t n,
-            Columns &columns)
+inline PairMotion pair_motion(const GrainLine *grains,
+                              const std::int32_t *first,
+                              const std::int32_t *second,
+                              const std::size_t n)
 {
-  for (std::size_t k = 0; k < n; ++k)
+  const GrainLine *one[4], *two[4];
+  for (std::size_t l = 0; l < n_lanes; ++l)
   {
-    const GrainLine &one = in.grains[in.first[begin + k]];
-    const GrainLine &two = in.grains[in.second[begin + k]];
-    columns.ux[k] = two.x - one.x;
-    columns.uy[k] = two.y - one.y;
-    columns.theta[k] = two.rotation - one.rotation;
-    columns.c1[k] = one.half_cos;
-    columns.s1[k] = one.half_sin;
-    columns.c2[k] = two.half_cos;
-    columns.s2[k] = two.half_sin;
-    // Two cache lines a joint, scalar by scalar: g++ would shuffle them into vectors,
-    // which takes twice as long.
-    asm volatile("");
+    one[l] = grains + first[l < n ? l : 0];
+    two[l] = grains + second[l < n ? l : 0];
   }
+  PairMotion motion;
+  Lanes row[4];
+  for (std::size_t l = 0; l < n_lanes; ++l)
+    row[l] = load(&two[l]->x) - load(&one[l]->x);
+  transpose(row[0], row[1], row[2], row[3]);
+  motion.ux = row[0];
+  motion.uy = row[1];
+  motion.theta = row[2];
+  const auto cosine_sine = [](const GrainLine *const *line, Lanes &cosine, Lanes &sine)
+  {
+    const Lanes even = join(load_pair(&line[0]->half_cos), load_pair(&line[2]->half_cos));
+    const Lanes odd = join(load_pair(&line[1]->half_cos), load_pair(&line[3]->half_cos));
+    cosine = evens(even, odd);
+    sine = odds(even, odd);
+  };
+  cosine_sine(one, motion.half.cos1, motion.half.sin1);
+  cosine_sine(two, motion.half.cos2, motion.half.sin2);
+  return motion;
+}
+
+template <bool weighted, bool prestressed, bool full>
+inline LaneMask intact_lanes(const IntactKernelInput &in,
+                             const std::size_t j,
+                             const std::size_t n,
+                             JointForce *force)
+{
+  const auto get = [n](const double *from)
+  { return full ? load(from) : load_some(from, n); };
+  const PairMotion motion =
+      pair_motion(in.grains, in.first + j, in.second + j, full ? n_lanes : n);
+  const InstalledFrame<Lanes> at{get(in.normal_x + j), get(in.normal_y + j),
+                                 get(in.length + j), get(in.lever_difference + j)};
+  const JointGeometry<Lanes> now = joint_geometry(at, motion.half, motion.ux, motion.uy);
+  Lanes gap = now.gap, shear = now.shear, rotation = motion.theta;
+  if (prestressed)
+  {
+    gap += get(in.initial_gap + j);
+    shear += get(in.initial_shear + j);
+    rotation += get(in.initial_rotation + j);
+  }
+
+  const Lanes stiffness = get(in.stiffness + j), half_length = get(in.half_length + j);
+  // Tension first, then Coulomb: the outer element in tension is the first for both.
+  const Lanes worst =
+      stiffness * gap + absolute(stiffness * rotation) * half_length * in.outer_centroid;
+  const Lanes coulomb =
+      absolute(stiffness * in.shear_ratio * shear) + worst * in.tan_friction;
+  const Lanes length = 2. * half_length;
+  Lanes area_stiffness = stiffness * length;
+  if (weighted)
+    area_stiffness *= get(in.weight + j);
+  const JointResultant<Lanes> sum{
+      area_stiffness * gap, area_stiffness * in.shear_ratio * shear,
+      -(area_stiffness * length * length * in.moment_factor * rotation)};
+  const GrainForces<Lanes> f = grain_forces(sum, at, now);
+  Lanes row[4] = {f.x, f.y, f.torque1, f.torque2};
+  transpose(row[0], row[1], row[2], row[3]);
+  for (std::size_t l = 0; l < (full ? n_lanes : n); ++l)
+    store(&force[l].x, row[l]);
+  return (worst >= in.tensile_strength) | (coulomb > in.cohesion);
 }
 
 template <bool weighted, bool prestressed>
 std::size_t intact_law(const IntactKernelInput &in,
                        const std::size_t begin,
-                       const std::size_t n,
+                       const std::size_t end,
+                       JointForce *force,
                        std::int32_t *over)
 {
-  Columns columns;
-  gather(in, begin, n, columns);
-  const double *const ux = columns.ux, *const uy = columns.uy;
-  const double *const theta = columns.theta, *const c1 = columns.c1;
-  const double *const s1 = columns.s1, *const c2 = columns.c2, *const s2 = columns.s2;
-
-  const double *const normal_x = in.normal_x + begin, *const normal_y =
-                                                          in.normal_y + begin;
-  const double *const length = in.length + begin;
-  const double *const lever = in.lever_difference + begin;
-  const double *const stiffness = in.stiffness + begin;
-  const double *const half_length = in.half_length + begin;
-  const double shear_ratio = in.shear_ratio, moment_factor = in.moment_factor;
-  const double outer = in.outer_centroid, tan_friction = in.tan_friction;
-  alignas(64) double fx[N], fy[N], t1[N], t2[N], worst[N], coulomb[N];
-  const double tensile_strength = in.tensile_strength, cohesion = in.cohesion;
-  for (std::size_t k = 0; k < n; ++k)
-  {
-    // Half angles add: the mean frame is turned by (theta1 + theta2)/2, the faces stand
-    // theta/2 to either side of it.
-    const double frame_cos = c1[k] * c2[k] - s1[k] * s2[k];
-    const double frame_sin = c1[k] * s2[k] + s1[k] * c2[k];
-    const double face_cos = c1[k] * c2[k] + s1[k] * s2[k];
-    const double face_sin = c1[k] * s2[k] - s1[k] * c2[k];
-    const double nx = frame_cos * normal_x[k] - frame_sin * normal_y[k];
-    const double ny = frame_sin * normal_x[k] + frame_cos * normal_y[k];
-
-    const double gap = ux[k] * nx + uy[k] * ny - 2. * length[k] * (s1[k] * s2[k]);
-    const double shear =
-        (uy[k] * nx - ux[k] * ny) - length[k] * frame_sin - lever[k] * face_sin;
-    double elastic_gap = gap, elastic_shear = shear, elastic_rotation = theta[k];
-    if (prestressed)
-    {
-      elastic_gap += in.initial_gap[begin + k];
-      elastic_shear += in.initial_shear[begin + k];
-      elastic_rotation += in.initial_rotation[begin + k];
-    }
-
-    const double full = 2. * half_length[k];
-    double area_stiffness = stiffness[k] * full;
-    const double normal_stress = stiffness[k] * elastic_gap;
-    const double bending = stiffness[k] * elastic_rotation;
-    worst[k] =
-        normal_stress + (bending < 0. ? -bending : bending) * half_length[k] * outer;
-    const double shear_stress = stiffness[k] * shear_ratio * elastic_shear;
-    coulomb[k] =
-        (shear_stress < 0. ? -shear_stress : shear_stress) + worst[k] * tan_friction;
-    if (weighted)
-      area_stiffness *= in.weight[begin + k];
-    const double F = area_stiffness * elastic_gap;
-    const double S = area_stiffness * shear_ratio * elastic_shear;
-    const double M = -area_stiffness * full * full * moment_factor * elastic_rotation;
-
-    // Force on the second grain: -F n - S t, at the middle of the two faces.
-    fx[k] = S * ny - F * nx;
-    fy[k] = -F * ny - S * nx;
-    const double r1 = 0.5 * (length[k] - lever[k]), r2 = 0.5 * (length[k] + lever[k]);
-    t1[k] = (r1 * face_cos + 0.5 * gap) * S - (0.5 * shear - r1 * face_sin) * F - M;
-    t2[k] = (r2 * face_cos + 0.5 * gap) * S - (0.5 * shear + r2 * face_sin) * F + M;
-  }
-
-  for (std::size_t k = 0; k < n; ++k)
-    in.force[begin + k] = {fx[k], fy[k], t1[k], t2[k]};
-
-  // Tension first, then Coulomb: the outer element in tension is the first for both.
-  long any = 0;
-  for (std::size_t k = 0; k < n; ++k)
-    any |= static_cast<long>(worst[k] >= tensile_strength) |
-           static_cast<long>(coulomb[k] > cohesion);
+  const std::size_t n = end - begin, whole = n - n % n_lanes;
+  LaneMask mask[intact_block / n_lanes], some{};
+  for (std::size_t k = 0; k < whole; k += n_lanes)
+    some |= mask[k / n_lanes] =
+        intact_lanes<weighted, prestressed, true>(in, begin + k, n_lanes, force + k);
+  if (whole < n)
+    some |= mask[whole / n_lanes] = intact_lanes<weighted, prestressed, false>(
+        in, begin + whole, n - whole, force + whole);
   std::size_t n_over = 0;
-  for (std::size_t k = 0; any != 0 && k < n; ++k)
-    if (worst[k] >= tensile_strength || coulomb[k] > cohesion)
-      over[n_over++] = static_cast<std::int32_t>(begin + k);
+  if (any(some))
+    for (std::size_t k = 0; k < n; ++k)
+      if (mask[k / n_lanes][k % n_lanes] != 0)
+        over[n_over++] = static_cast<std::int32_t>(begin + k);
   return n_over;
 }
 
 std::size_t intact(const IntactKernelInput &in,
                    const std::size_t begin,
                    const std::size_t end,
+                   JointForce *force,
                    std::int32_t *over)
 {
-  const std::size_t n = end - begin;
   if (in.weight != nullptr)
-    return in.initial_gap != nullptr ? intact_law<true, true>(in, begin, n, over)
-                                     : intact_law<true, false>(in, begin, n, over);
-  return in.initial_gap != nullptr ? intact_law<false, true>(in, begin, n, over)
-                                   : intact_law<false, false>(in, begin, n, over);
+    return in.initial_gap != nullptr
+               ? intact_law<true, true>(in, begin, end, force, over)
+               : intact_law<true, false>(in, begin, end, force, over);
+  return in.initial_gap != nullptr
+             ? intact_law<false, true>(in, begin, end, force, over)
+             : intact_law<false, false>(in, begin, end, force, over);
+}
+
+void sum(const std::int32_t *first,
+         const std::int32_t *second,
+         const JointForce *force,
+         const std::size_t n,
+         GrainSum *sums)
+{
+  const Lanes opposite{-1., -1., 1., 1.};
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    double *const one = &sums[first[k]].x, *const two = &sums[second[k]].x;
+    const Lanes f = load(&force[k].x);
+    store(one, load(one) + f * opposite);
+    store(two, load(two) + __builtin_shufflevector(f, f, 0, 1, 3, 2));
+  }
+}
+
+/// Lanes whose byte is @p code.
+template <class Code>
+inline LaneMask lanes_with(const Code *codes, const Code code)
+{
+  LaneMask mask;
+  for (std::size_t l = 0; l < n_lanes; ++l)
+    mask[l] = codes[l] == code ? -1 : 0;
+  return mask;
+}
+
+inline ElementLaw<Lanes> element_laws(const DamagedKernelInput &in,
+                                      const std::int32_t *joint,
+                                      const std::int32_t *group)
+{
+  ElementLaw<Lanes> law;
+  law.normal_stiffness = gather(in.stiffness, joint);
+  law.half_length = gather(in.half_length, joint);
+  const ElementConstants *const l[4] = {in.laws + group[0], in.laws + group[1],
+                                        in.laws + group[2], in.laws + group[3]};
+  const auto get = [&l](const double ElementConstants::*member) {
+    return Lanes{l[0]->*member, l[1]->*member, l[2]->*member, l[3]->*member};
+  };
+  law.shear_stiffness = law.normal_stiffness * get(&ElementConstants::shear_ratio);
+  law.n_elements = get(&ElementConstants::n_elements);
+  law.element_length = 2. * law.half_length / law.n_elements;
+  law.moment = get(&ElementConstants::moment);
+  law.residual_friction = get(&ElementConstants::residual_friction);
+  law.residual_cohesion = get(&ElementConstants::residual_cohesion);
+  law.tensile_strength = get(&ElementConstants::tensile_strength);
+  law.cohesion = get(&ElementConstants::cohesion);
+  law.tan_friction = get(&ElementConstants::tan_friction);
+  return law;
+}
+
+constexpr int max_elements = 32; ///< joints with more go one by one
+
+bool damaged(const DamagedKernelInput &in, const std::size_t begin)
+{
+  if (in.n_elements > max_elements)
+    return true;
+  const std::int32_t *const joint = in.joint + begin;
+  std::int32_t first[4], second[4];
+  for (std::size_t l = 0; l < n_lanes; ++l)
+  {
+    first[l] = in.first[joint[l]];
+    second[l] = in.second[joint[l]];
+  }
+  const Lanes rotation1 = gather(in.rotation, first);
+  const Lanes rotation2 = gather(in.rotation, second);
+  const InstalledFrame<Lanes> at{gather(in.normal_x, joint), gather(in.normal_y, joint),
+                                 gather(in.length, joint),
+                                 gather(in.lever_difference, joint)};
+  const JointGeometry<Lanes> place = joint_geometry(
+      at, half_angles(rotation1, rotation2), gather(in.x, second) - gather(in.x, first),
+      gather(in.y, second) - gather(in.y, first));
+  Deformation<Lanes> now{place.gap, place.shear, rotation2 - rotation1};
+  Lanes parted = Lanes{};
+  if (in.initial_gap != nullptr)
+  {
+    const Lanes made = gather(in.initial_gap, joint);
+    now.gap += made;
+    now.shear += gather(in.initial_shear, joint);
+    now.rotation += gather(in.initial_rotation, joint);
+    parted = larger(parted, made);
+  }
+  const Deformation<Lanes> before{load(in.gap + begin), load(in.shear + begin),
+                                  load(in.turn + begin)};
+  const ElementLaw<Lanes> law = element_laws(in, joint, in.group + begin);
+  const Lanes weight = in.weight != nullptr ? gather(in.weight, joint) : Lanes{} + 1.;
+
+  Lanes new_slip[max_elements];
+  ElementSums<Lanes> sums;
+  for (int e = 0; e < in.n_elements; ++e)
+  {
+    const std::size_t slot = n_lanes * (begin / n_lanes * in.n_elements + e);
+    const LaneMask bonded = lanes_with(in.bond + slot, Bond::bonded);
+    new_slip[e] =
+        add_element<false>(law, e, bonded, before, now, load(in.slip + slot), sums);
+  }
+
+  const LaneMask removed = ~lanes_with(in.removed + begin, static_cast<unsigned char>(0));
+  const LaneMask event = (sums.over | parts(law, sums, now, parted)) & ~removed;
+  if (any(event))
+    return true;
+  for (int e = 0; e < in.n_elements; ++e)
+  {
+    double *const slip = in.slip + n_lanes * (begin / n_lanes * in.n_elements + e);
+    store(slip, select(removed, load(slip), new_slip[e]));
+  }
+  store(in.gap + begin, select(removed, before.gap, now.gap));
+  store(in.shear + begin, select(removed, before.shear, now.shear));
+  store(in.turn + begin, select(removed, before.rotation, now.rotation));
+  store(in.slip_energy + begin, load(in.slip_energy + begin) +
+                                    select(removed, Lanes{}, weight * sums.dissipated));
+  const JointResultant<Lanes> resultant{weight * sums.normal, weight * sums.shear,
+                                        weight * sums.moment};
+  const GrainForces<Lanes> f = grain_forces(resultant, at, place);
+  Lanes row[4] = {select(removed, Lanes{}, f.x), select(removed, Lanes{}, f.y),
+                  select(removed, Lanes{}, f.torque1),
+                  select(removed, Lanes{}, f.torque2)};
+  transpose(row[0], row[1], row[2], row[3]);
+  for (std::size_t l = 0; l < n_lanes; ++l)
+    store(&in.force[begin + l].x, row[l]);
+  return false;
 }
 } // namespace
 
@@ -199,6 +295,6 @@ std::size_t intact(const IntactKernelInput &in,
 #define ANTIFORM_NAME(x) ANTIFORM_TEXT(x)
 KernelLevel kernel_level()
 {
-  return {ANTIFORM_NAME(ANTIFORM_LEVEL) + 6, intact, lines};
+  return {ANTIFORM_NAME(ANTIFORM_LEVEL) + 6, intact, lines, sum, damaged};
 }
 } // namespace antiform::discrete::ANTIFORM_LEVEL

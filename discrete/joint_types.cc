@@ -20,11 +20,10 @@ void unbond(Joints &joints, const std::size_t j, const double gap)
       v->resize(joints.size(), 0.);
     joints.initial_gap[j] = gap;
   }
-  DamagedJoint damaged = make_damaged(joints, j);
-  damaged.bond.assign(damaged.bond.size(), Bond::unbonded);
-  damaged.gap = gap;
-  joints.damage[j] = static_cast<std::int32_t>(joints.damaged.size());
-  joints.damaged.push_back(damaged);
+  const std::size_t k = add_damaged(joints, j);
+  for (int e = 0; e < joints.damaged.n_elements(); ++e)
+    joints.damaged.set_bond(k, e, Bond::unbonded);
+  joints.damaged.gap[k] = gap;
 }
 
 void unbond_some(Joints &joints,

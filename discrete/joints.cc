@@ -1,5 +1,8 @@
 #include "discrete/joints.h"
 
+#include "discrete/joint_kernel.h"
+#include "discrete/joint_law.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -54,38 +57,38 @@ void Joints::finish(const std::size_t n_grains)
   grain_joint.resize(2 * size());
   std::vector<std::int32_t> next(grain_begin.begin(), grain_begin.end() - 1);
   for (std::size_t j = 0; j < size(); ++j)
-    grain_joint[next[first[j]]++] = static_cast<std::int32_t>(j);
-  grain_second = next;
-  for (std::size_t j = 0; j < size(); ++j)
-    grain_joint[next[second[j]]++] = static_cast<std::int32_t>(j);
+    for (const std::int32_t i : {first[j], second[j]})
+      grain_joint[next[i]++] = static_cast<std::int32_t>(j);
+  work.parts.clear();
 }
 
-const JointGroup &Joints::group_of(const std::size_t joint) const
+std::size_t Joints::group_number(const std::size_t joint) const
 {
-  for (const JointGroup &group : groups)
-    if (joint < group.end)
-      return group;
-  return groups.back();
+  std::size_t g = 0;
+  while (g + 1 < groups.size() && joint >= groups[g].end)
+    ++g;
+  return g;
 }
 
-JointDeformation
-deformation(const Grains &grains, const Joints &joints, const std::size_t j)
+namespace
+{
+JointDeformation deformation(const Grains &grains,
+                             const Joints &joints,
+                             const std::size_t j,
+                             const double time_back)
 {
   const std::size_t one = joints.first[j], two = joints.second[j];
-  const double half1 = 0.5 * grains.rotation[one], half2 = 0.5 * grains.rotation[two];
-  const double c1 = std::cos(half1), s1 = std::sin(half1);
-  const double c2 = std::cos(half2), s2 = std::sin(half2);
-  const double frame_cos = c1 * c2 - s1 * s2, frame_sin = c1 * s2 + s1 * c2;
-  const double nx = frame_cos * joints.normal_x[j] - frame_sin * joints.normal_y[j];
-  const double ny = frame_sin * joints.normal_x[j] + frame_cos * joints.normal_y[j];
-  const double ux = grains.displacement_x[two] - grains.displacement_x[one];
-  const double uy = grains.displacement_y[two] - grains.displacement_y[one];
-
-  JointDeformation d;
-  d.gap = ux * nx + uy * ny - 2. * joints.length[j] * s1 * s2;
-  d.shear = uy * nx - ux * ny - joints.length[j] * frame_sin -
-            joints.lever_difference[j] * (c1 * s2 - s1 * c2);
-  d.rotation = grains.rotation[two] - grains.rotation[one];
+  const auto difference = [&](const std::vector<double> &u, const std::vector<double> &v)
+  { return (u[two] - time_back * v[two]) - (u[one] - time_back * v[one]); };
+  const double rotation1 = grains.rotation[one] - time_back * grains.spin[one];
+  const double rotation2 = grains.rotation[two] - time_back * grains.spin[two];
+  const JointGeometry<double> at =
+      joint_geometry(InstalledFrame<double>{joints.normal_x[j], joints.normal_y[j],
+                                            joints.length[j], joints.lever_difference[j]},
+                     half_angles(rotation1, rotation2),
+                     difference(grains.displacement_x, grains.velocity_x),
+                     difference(grains.displacement_y, grains.velocity_y));
+  JointDeformation d{at.gap, at.shear, rotation2 - rotation1};
   if (!joints.initial_gap.empty())
   {
     d.gap += joints.initial_gap[j];
@@ -93,6 +96,21 @@ deformation(const Grains &grains, const Joints &joints, const std::size_t j)
     d.rotation += joints.initial_rotation[j];
   }
   return d;
+}
+} // namespace
+
+JointDeformation
+deformation(const Grains &grains, const Joints &joints, const std::size_t j)
+{
+  return deformation(grains, joints, j, 0.);
+}
+
+JointDeformation deformation_before(const Grains &grains,
+                                    const Joints &joints,
+                                    const std::size_t j,
+                                    const double dt)
+{
+  return deformation(grains, joints, j, dt);
 }
 
 StiffnessSums

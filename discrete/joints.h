@@ -4,6 +4,7 @@
 #include "discrete/grains.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace antiform::discrete
@@ -27,22 +28,55 @@ struct JointForce
   double torque2; ///< on the second grain [N m]
 };
 
-/// State of the elements of a joint that has lost at least one bond. An intact joint has
-/// none: its forces follow from the displacements of its grains alone.
-struct DamagedJoint
+/// State of the elements of joints that have lost at least one bond, in the order in
+/// which they lost the first. An intact joint has none: its forces follow from the
+/// displacements of its grains alone. Parallel arrays: entry k is damaged joint k. They
+/// are filled up to a whole number of four joints, the lanes of the kernel, with joints
+/// that are removed.
+struct DamagedJoints
 {
-  std::size_t joint = 0;
-  std::vector<Bond> bond;   ///< per element
-  std::vector<double> slip; ///< plastic slip p per element: tau = k_s (u_s - p) [m]
-  std::vector<double> shear_stress;  ///< force over full element area [Pa]
-  std::vector<double> normal_stress; ///< mean over the full element [Pa]
-  double gap = 0.;                   ///< at the last evaluation [m]
-  double shear = 0.;                 ///< u_s at the last evaluation [m]
-  double rotation = 0.;              ///< at the last evaluation [rad]
-  double slip_energy = 0.;           ///< dissipated by sliding so far, weighted [J]
-  double fracture_energy = 0.;       ///< lost with broken elements so far, weighted [J]
-  bool removed = false;              ///< faces parted for good; contact may take over
-  JointForce force{0., 0., 0., 0.};  ///< of the last evaluation
+  std::vector<std::int32_t> joint;
+  std::vector<std::int32_t> group;
+  std::vector<unsigned char> removed;  ///< faces parted for good; contact may take over
+  std::vector<double> gap;             ///< at the last evaluation [m]
+  std::vector<double> shear;           ///< u_s at the last evaluation [m]
+  std::vector<double> rotation;        ///< at the last evaluation [rad]
+  std::vector<double> slip_energy;     ///< dissipated by sliding so far, weighted [J]
+  std::vector<double> fracture_energy; ///< lost with broken elements so far, weighted [J]
+  std::vector<JointForce> force;       ///< of the last evaluation
+
+  std::size_t size() const { return size_; }
+  /// Room for elements that every joint has: the largest N so far.
+  int n_elements() const { return n_elements_; }
+  Bond bond(std::size_t k, int e) const { return bonds_[slot(k, e)]; }
+  void set_bond(std::size_t k, int e, Bond bond) { bonds_[slot(k, e)] = bond; }
+  /// Plastic slip p of an element: tau = k_s (u_s - p) [m].
+  double slip(std::size_t k, int e) const { return slips_[slot(k, e)]; }
+  void set_slip(std::size_t k, int e, double slip) { slips_[slot(k, e)] = slip; }
+
+  /// Record of joint @p j of group @p g, which has @p n elements, all of them bonded.
+  /// \return its number
+  std::size_t append(std::size_t j, std::size_t g, int n);
+  void pop_back();
+  void clear() { *this = {}; }
+
+  // Bonds and slips of four joints lie together: element by element, four of each.
+  const Bond *bonds() const { return bonds_.data(); }
+  double *slips() { return slips_.data(); }
+
+private:
+  std::size_t slot(const std::size_t k, const int e) const
+  {
+    return 4 * (k / 4 * static_cast<std::size_t>(n_elements_) +
+                static_cast<std::size_t>(e)) +
+           k % 4;
+  }
+  void make_room(int n);
+
+  std::size_t size_ = 0;
+  int n_elements_ = 0;
+  std::vector<Bond> bonds_;
+  std::vector<double> slips_;
 };
 
 /// A bond that broke: one line of cracks.csv.
@@ -58,6 +92,52 @@ struct Crack
   int layer = 0;
   std::size_t joint = 0;
   int element = 0;
+};
+
+/// Consecutive joints of one group that a kernel takes at a time.
+struct JointBlock
+{
+  std::int32_t begin = 0, end = 0;
+  std::int32_t group = 0;
+  bool shared = false; ///< some of its grains belong to another part
+};
+
+/// Grains begin .. end - 1 and all blocks that hold a joint of theirs, ascending: what
+/// one thread works on. A block with grains of two parts is evaluated for both.
+struct JointPart
+{
+  std::size_t begin = 0, end = 0;
+  std::vector<JointBlock> blocks;
+  /// Joints over a strength in this step, with the force that an intact one has.
+  std::vector<std::pair<std::int32_t, JointForce>> over;
+
+  bool has(const std::int32_t grain) const
+  {
+    return static_cast<std::size_t>(grain) - begin < end - begin;
+  }
+};
+
+struct GrainLine;
+struct GrainSum;
+struct IntactKernelInput;
+struct ElementConstants;
+/// Memory that the kernels use within a step, kept so that no step allocates any.
+struct JointWork
+{
+  std::vector<GrainLine> lines;
+  std::vector<GrainSum> sums;
+  std::vector<IntactKernelInput> inputs;
+  std::vector<ElementConstants> laws;
+  std::vector<JointPart> parts;
+  std::vector<std::pair<std::int32_t, JointForce>> over;
+  std::vector<std::int32_t> events;
+
+  JointWork();
+  ~JointWork();
+  JointWork(const JointWork &);
+  JointWork(JointWork &&) noexcept;
+  JointWork &operator=(const JointWork &);
+  JointWork &operator=(JointWork &&) noexcept;
 };
 
 /// Parallel arrays: entry j is joint j, an interface of two grains. Joints are numbered
@@ -89,22 +169,26 @@ struct Joints
   std::vector<JointGroup> groups; ///< cover all joints, in order
 
   // State.
-  std::vector<std::int32_t> damage;  ///< index into damaged, or -1 while intact
-  std::vector<DamagedJoint> damaged; ///< in the order in which they lost their first bond
+  std::vector<std::int32_t> damage; ///< index into damaged, or -1 while intact
+  DamagedJoints damaged;            ///< in the order in which they lost their first bond
   std::vector<unsigned char> would_break; ///< unbreakable joints that exceeded a strength
 
-  // Result of a step.
+  /// Result of a step that was asked for them.
   std::vector<JointForce> force;
 
-  // Sum order: the joints of grain i are grain_joint[grain_begin[i]] up to
-  // grain_begin[i + 1]; those whose second grain it is begin at grain_second[i]. Both
-  // parts ascend.
+  /// The joints of grain i, ascending, are grain_joint[grain_begin[i]] up to
+  /// grain_begin[i + 1].
   std::vector<std::int32_t> grain_begin;
-  std::vector<std::int32_t> grain_second;
   std::vector<std::int32_t> grain_joint;
 
+  JointWork work; ///< of the kernels; nothing that has to be kept
+
   std::size_t size() const { return first.size(); }
-  const JointGroup &group_of(std::size_t joint) const;
+  std::size_t group_number(std::size_t joint) const;
+  const JointGroup &group_of(const std::size_t joint) const
+  {
+    return groups[group_number(joint)];
+  }
 
   /// Bond grains @p i and @p j where they stand (gap or overlap alike), stress-free.
   /// Appends to the last group. The stiffness of two different moduli is that of two
@@ -128,6 +212,9 @@ struct JointDeformation
   double rotation = 0.; ///< theta_b [rad]
 };
 JointDeformation deformation(const Grains &grains, const Joints &joints, std::size_t j);
+/// The same one step of @p dt [s] ago, from the half-step velocities that led here.
+JointDeformation
+deformation_before(const Grains &grains, const Joints &joints, std::size_t j, double dt);
 
 /// Where in time a force evaluation stands.
 struct StepTime
@@ -145,25 +232,26 @@ void evaluate_broken_joints(const Grains &grains,
                             const StepTime &now,
                             std::vector<Crack> *new_cracks);
 
-/// The vector kernel of this processor for all joints, and the first break of those that
-/// are over a strength.
+/// Set the grains' forces to the sums of their joints' forces: the vector kernel of this
+/// processor for intact joints, what evaluate_broken_joints() has left for the others,
+/// and the first break of those that are over a strength. Every grain sums its joints in
+/// their order, so the result has the same bits for any number of threads.
 /// \param[in,out] new_cracks breaks of this step are appended, in joint and element
 /// order;
 ///                null: strengths are not looked at (equilibration).
-void evaluate_bonds(const Grains &grains,
+/// \param keep_forces fill Joints::force too
+void evaluate_bonds(Grains &grains,
                     Joints &joints,
                     const StepTime &now,
-                    std::vector<Crack> *new_cracks);
+                    std::vector<Crack> *new_cracks,
+                    bool keep_forces);
 
-/// Set the grains' forces to the sums of their joints' forces. Every grain sums its
-/// joints in their order, so the result has the same bits for any number of threads.
-void sum_joint_forces(Grains &grains, Joints &joints);
-
-/// The three above in their order.
+/// The two above in their order, all forces kept unless @p keep_forces says otherwise.
 void compute_joint_forces(Grains &grains,
                           Joints &joints,
                           const StepTime &now,
-                          std::vector<Crack> *new_cracks);
+                          std::vector<Crack> *new_cracks,
+                          bool keep_forces = true);
 
 /// Energies of the joints at the present state, weighted [J].
 struct JointEnergies

@@ -1,10 +1,15 @@
 // Speed of the whole explicit step of bonded grains: joint forces with strengths looked
-// at, kick, drift. Prints a table; never fails on time.
+// at, kick, drift; its plain twin in the same run; what contraction and the fixed order
+// of sums cost; memory. Prints tables; never fails on time.
 //
 //   joint_forces_benchmark [repetitions]
 //
 // ANTIFORM_COMMIT in the environment is printed as the commit.
+#include "discrete/joint_kernel.h"
+
 #include "support/grain_fixtures.h"
+#include "support/plain_damage.h"
+#include "support/plain_joint.h"
 
 #include <omp.h>
 
@@ -12,8 +17,15 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
+#include <functional>
 #include <string>
+
+namespace antiform::discrete::level_contracted
+{
+KernelLevel kernel_level(); // as x86-64-v3, but with a*b+c contracted
+}
 
 namespace
 {
@@ -29,9 +41,19 @@ std::string processor()
   return "unknown";
 }
 
+enum class State
+{
+  intact,
+  damaged ///< one element of every joint is broken
+};
+
 /// A rock that vibrates a little and does not break. @p scattered: grains numbered at
 /// random instead of row by row.
-Sample rock(const int columns, const int rows, const int n_elements, const bool scattered)
+Sample rock(const int columns,
+            const int rows,
+            const int n_elements,
+            const State state,
+            const bool scattered = false)
 {
   const Grains ordered = random_pack(columns, rows, 71);
   std::vector<std::size_t> number(ordered.size());
@@ -45,42 +67,255 @@ Sample rock(const int columns, const int rows, const int n_elements, const bool 
     sample.grains.add(ordered.reference(i), ordered.radius[i], 1., 0);
   bond_all(sample, strong_law(n_elements));
   shake(sample.grains, 1e-3, 1e-3, 73);
+  for (std::size_t j = 0; state == State::damaged && j < sample.joints.size(); ++j)
+    break_element(sample.grains, sample.joints, j, static_cast<int>(j) % n_elements,
+                  Bond::broken_in_tension);
   return sample;
+}
+
+double seconds(const bool of_processor)
+{
+  if (of_processor)
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
 }
 
 struct Speed
 {
-  double median, slowest, fastest; ///< million grain-steps per second
+  double median, slowest, fastest; ///< million units per second
 };
 
-Speed measure(Sample &sample, const int threads, const int repetitions)
+/// @p step does @p units at a time. One thread: seconds of the processor; more: of the
+/// clock.
+Speed measure(const std::function<void()> &step,
+              const double units,
+              const int n_steps,
+              const int threads,
+              const int repetitions)
 {
   omp_set_num_threads(threads);
-  Grains &grains = sample.grains;
-  const double dt = 0.5 * stable_step(grains, sample.joints);
-  const auto n = static_cast<double>(grains.size());
-  const int steps = std::max(20, static_cast<int>(2e6 / n));
   const auto run = [&](const int how_many)
   {
-    for (int step = 0; step < how_many; ++step)
-    {
-      compute_joint_forces(grains, sample.joints, {0, 0., dt}, &sample.cracks);
-      kick(grains, dt, nullptr);
-      drift(grains, dt);
-    }
+    for (int k = 0; k < how_many; ++k)
+      step();
   };
-  run(steps / 4); // caches, clock, threads
+  run(n_steps / 4 + 1); // caches, clock, threads
   std::vector<double> speed;
   for (int r = 0; r < repetitions; ++r)
   {
-    const auto start = std::chrono::steady_clock::now();
-    run(steps);
-    const std::chrono::duration<double> seconds =
-        std::chrono::steady_clock::now() - start;
-    speed.push_back(n * steps / seconds.count() * 1e-6);
+    const double start = seconds(threads == 1);
+    run(n_steps);
+    speed.push_back(units * n_steps / (seconds(threads == 1) - start) * 1e-6);
   }
   std::sort(speed.begin(), speed.end());
   return {speed[speed.size() / 2], speed.front(), speed.back()};
+}
+
+int steps_for(const Sample &sample)
+{
+  return std::max(20, static_cast<int>(3e6 / static_cast<double>(sample.grains.size())));
+}
+
+Speed measure_step(Sample &sample, const int threads, const int repetitions)
+{
+  Grains &grains = sample.grains;
+  const double dt = 0.5 * stable_step(grains, sample.joints);
+  return measure(
+      [&]
+      {
+        compute_joint_forces(grains, sample.joints, {0, 0., dt}, &sample.cracks, false);
+        kick(grains, dt, nullptr);
+        drift(grains, dt);
+      },
+      static_cast<double>(grains.size()), steps_for(sample), threads, repetitions);
+}
+
+/// The same step with the plain twin, a joint at a time.
+Speed measure_plain_step(Sample &sample, const int repetitions)
+{
+  Grains &grains = sample.grains;
+  Joints &joints = sample.joints;
+  const double dt = 0.5 * stable_step(grains, joints);
+  std::vector<PlainDamagedJoint> twins;
+  for (std::size_t k = 0; k < joints.damaged.size(); ++k)
+  {
+    twins.push_back(plain_damaged(joints, joints.damaged.joint[k]));
+    for (std::size_t e = 0; e < twins.back().bond.size(); ++e)
+      twins.back().bond[e] = joints.damaged.bond(k, static_cast<int>(e));
+  }
+  const auto step = [&]
+  {
+    for (std::vector<double> *v : {&grains.force_x, &grains.force_y, &grains.torque})
+      std::fill(v->begin(), v->end(), 0.);
+    for (std::size_t j = 0; j < joints.size(); ++j)
+    {
+      JointForce f;
+      if (joints.damage[j] < 0)
+        f = plain_joint_force<double>(grains, joints, j);
+      else
+      {
+        PlainDamagedJoint &twin = twins[joints.damage[j]];
+        plain_evaluate(grains, joints, twin, deformation(grains, joints, j),
+                       {twin.gap, twin.shear, twin.rotation}, {0, 0., dt},
+                       &sample.cracks);
+        f = twin.force;
+      }
+      const std::size_t one = joints.first[j], two = joints.second[j];
+      grains.force_x[one] -= f.x;
+      grains.force_y[one] -= f.y;
+      grains.torque[one] += f.torque1;
+      grains.force_x[two] += f.x;
+      grains.force_y[two] += f.y;
+      grains.torque[two] += f.torque2;
+    }
+    kick(grains, dt, nullptr);
+    drift(grains, dt);
+  };
+  return measure(step, static_cast<double>(grains.size()),
+                 std::max(5, steps_for(sample) / 8), 1, repetitions);
+}
+
+std::string text(const Speed &s)
+{
+  char line[80];
+  std::snprintf(line, sizeof line, "%6.2f [%.2f, %.2f]", s.median, s.slowest, s.fastest);
+  return line;
+}
+
+void print_steps(const int repetitions)
+{
+  std::printf("\nmillion grain-steps per second: median of %d [slowest, fastest]; one "
+              "thread: of processor time\n%7s %7s %2s %-7s %-9s  %-22s %-22s %-20s %s\n",
+              repetitions, "grains", "joints", "N", "law", "numbering", "1 thread",
+              "2 threads", "plain twin, 1 thread", "ratio");
+  for (const State state : {State::intact, State::damaged})
+    for (const int n_elements : {1, 3})
+      for (const auto &[columns, rows] :
+           {std::pair(30, 50), std::pair(100, 150), std::pair(200, 300)})
+        for (const bool scattered : {false, true})
+        {
+          if (scattered && (rows != 150 || n_elements != 3))
+            continue;
+          Sample sample = rock(columns, rows, n_elements, state, scattered);
+          Sample twin = sample;
+          const Speed one = measure_step(sample, 1, repetitions);
+          const Speed plain = measure_plain_step(twin, repetitions);
+          const Speed two = measure_step(sample, 2, repetitions);
+          std::printf("%7zu %7zu %2d %-7s %-9s  %-22s %-22s %-20s %5.1f\n",
+                      sample.grains.size(), sample.joints.size(), n_elements,
+                      state == State::intact ? "intact" : "full",
+                      scattered ? "scattered" : "by rows", text(one).c_str(),
+                      text(two).c_str(), text(plain).c_str(), one.median / plain.median);
+          std::fflush(stdout);
+        }
+}
+
+/// Forces of all joints and their sums by one level's kernels, on one thread.
+Speed measure_kernels(Sample &sample, const KernelLevel &level, const int repetitions)
+{
+  omp_set_num_threads(1);
+  compute_joint_forces(sample.grains, sample.joints, {}, &sample.cracks, false);
+  Grains &grains = sample.grains;
+  Joints &joints = sample.joints;
+  JointWork &work = joints.work;
+  const DamagedKernelInput damaged = damaged_input(grains, joints, true);
+  const auto step = [&]
+  {
+    for (std::size_t k = 0; k < joints.damaged.size(); k += 4)
+      level.damaged(damaged, k);
+    if (joints.damaged.size() > 0)
+      return;
+    level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
+                grains.rotation.data(), work.lines.data(), 0, grains.size());
+    for (const JointBlock &block : work.parts[0].blocks)
+    {
+      alignas(64) JointForce force[intact_block];
+      std::int32_t over[intact_block];
+      level.intact(work.inputs[0], block.begin, block.end, force, over);
+      level.sum(joints.first.data() + block.begin, joints.second.data() + block.begin,
+                force, block.end - block.begin, work.sums.data());
+    }
+  };
+  return measure(step, static_cast<double>(joints.size()), steps_for(sample), 1,
+                 repetitions);
+}
+
+void print_contraction(const int repetitions)
+{
+  if (!__builtin_cpu_supports("fma"))
+    return;
+  std::printf("\nmillion joints per second of processor time, kernels alone, 15,000 "
+              "grains, N = 3\n%-7s  %-22s %-22s %s\n",
+              "law", "contraction off", "contraction on", "cost");
+  for (const State state : {State::intact, State::damaged})
+  {
+    Sample sample = rock(100, 150, 3, state);
+    // The like of it without contraction, also where the processor has a higher level.
+    const KernelLevel level = supported_kernel_levels()[1];
+    const Speed off = measure_kernels(sample, level, repetitions);
+    const Speed on =
+        measure_kernels(sample, level_contracted::kernel_level(), repetitions);
+    std::printf("%-7s  %-22s %-22s %4.1f %%\n",
+                state == State::intact ? "intact" : "full", text(off).c_str(),
+                text(on).c_str(), 100. * (on.median / off.median - 1.));
+  }
+}
+
+/// Joints that two threads evaluate both, since they have a grain of each: what the fixed
+/// order of sums costs. On one thread the order is that of the joints anyway.
+void print_shared_joints()
+{
+  std::printf("\n");
+  for (const bool scattered : {false, true})
+  {
+    Sample sample = rock(100, 150, 3, State::intact, scattered);
+    omp_set_num_threads(2);
+    compute_joint_forces(sample.grains, sample.joints, {}, nullptr, false);
+    std::size_t evaluated = 0;
+    for (const JointPart &part : sample.joints.work.parts)
+      for (const JointBlock &block : part.blocks)
+        evaluated += block.end - block.begin;
+    const auto n = static_cast<double>(sample.joints.size());
+    std::printf("evaluated twice for the order of sums, 2 threads, numbering %s: %.1f %% "
+                "of the joints\n",
+                scattered ? "scattered" : "by rows",
+                100. * (static_cast<double>(evaluated) - n) / n);
+  }
+}
+
+template <class... Vectors>
+double bytes(const Vectors &...vectors)
+{
+  return (static_cast<double>(vectors.capacity() * sizeof(vectors[0])) + ...);
+}
+
+void print_memory()
+{
+  Sample sample = rock(100, 150, 3, State::damaged);
+  omp_set_num_threads(1);
+  compute_joint_forces(sample.grains, sample.joints, {}, nullptr);
+  const Grains &g = sample.grains;
+  const Joints &j = sample.joints;
+  const DamagedJoints &d = j.damaged;
+  const double grain =
+      bytes(g.reference_x, g.reference_y, g.radius, g.mass, g.inertia, g.region,
+            g.displacement_x, g.displacement_y, g.rotation, g.velocity_x, g.velocity_y,
+            g.spin, g.inverse_mass, g.inverse_inertia, g.force_x, g.force_y, g.torque,
+            j.grain_begin, j.work.lines, j.work.sums);
+  const double joint =
+      bytes(j.first, j.second, j.normal_x, j.normal_y, j.length, j.lever_difference,
+            j.stiffness, j.half_length, j.weight, j.initial_gap, j.initial_shear,
+            j.initial_rotation, j.damage, j.would_break, j.force, j.grain_joint);
+  const double damage = bytes(d.joint, d.group, d.removed, d.gap, d.shear, d.rotation,
+                              d.slip_energy, d.fracture_energy, d.force) +
+                        static_cast<double>(d.n_elements()) *
+                            static_cast<double>(d.joint.capacity()) *
+                            (sizeof(double) + sizeof(Bond));
+  const auto n_joints = static_cast<double>(j.size());
+  std::printf("\nmemory [bytes]: %.0f a grain, %.0f a joint, %.0f more a damaged joint "
+              "(N = 3)\n",
+              grain / static_cast<double>(g.size()), joint / n_joints, damage / n_joints);
 }
 } // namespace
 
@@ -90,22 +325,8 @@ int main(int argc, char **argv)
   const char *commit = std::getenv("ANTIFORM_COMMIT");
   std::printf("%s, kernel level %s, commit %s\n", processor().c_str(),
               joint_kernel_level().c_str(), commit != nullptr ? commit : "unknown");
-  std::printf("million grain-steps per second: median of %d [slowest, fastest]\n",
-              repetitions);
-  std::printf("%8s %8s %3s %-10s %7s  %s\n", "grains", "joints", "N", "numbering",
-              "threads", "speed");
-  for (const auto &[columns, rows] :
-       {std::pair(30, 50), std::pair(100, 150), std::pair(200, 300)})
-    for (const int n_elements : {1, 3})
-      for (const bool scattered : {false, true})
-        for (const int threads : {1, 2})
-        {
-          Sample sample = rock(columns, rows, n_elements, scattered);
-          const Speed speed = measure(sample, threads, repetitions);
-          std::printf("%8zu %8zu %3d %-10s %7d  %7.2f [%.2f, %.2f]\n",
-                      sample.grains.size(), sample.joints.size(), n_elements,
-                      scattered ? "scattered" : "by rows", threads, speed.median,
-                      speed.slowest, speed.fastest);
-          std::fflush(stdout);
-        }
+  print_steps(repetitions);
+  print_contraction(repetitions);
+  print_shared_joints();
+  print_memory();
 }

@@ -8,11 +8,12 @@ namespace antiform::discrete::test
 {
 /// Force of an intact joint straight from its definition: positions of the grains, the
 /// two faces, their mean frame. Extended precision stands in for the kernel's freedom
-/// from cancellation; nothing else is clever here.
-inline JointForce
+/// from cancellation; nothing else is clever here. In double precision it is what a
+/// benchmark compares with.
+template <class Real = long double>
+JointForce
 plain_joint_force(const Grains &grains, const Joints &joints, const std::size_t j)
 {
-  using Real = long double;
   const std::size_t one = joints.first[j], two = joints.second[j];
   const FlatJoint &law = joints.group_of(j).law;
   const Real turn1 = grains.rotation[one], turn2 = grains.rotation[two];

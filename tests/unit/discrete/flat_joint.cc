@@ -93,11 +93,12 @@ TEST(FlatJointBending, BondedMomentDoesNotDependOnTheNumberOfElements)
     const double exact = -pair.joints.stiffness[0] * 1e-3 * full * full * full / 12.;
     EXPECT_NEAR(load(pair, d).moment, exact, 1e-12 * std::abs(exact)) << n; // round-off
     // The same from the damaged joint's loop over elements.
-    DamagedJoint damaged = make_damaged(pair.joints, 0);
-    evaluate_damaged(pair.grains, pair.joints, damaged, d, d, {}, nullptr);
-    pair.grains.torque[1] = damaged.force.torque2;
-    pair.grains.force_x[1] = damaged.force.x;
-    pair.grains.force_y[1] = damaged.force.y;
+    DamagedJoints damaged;
+    damaged.append(0, 0, n);
+    evaluate_damaged(pair.grains, pair.joints, damaged, 0, d, {}, nullptr);
+    pair.grains.torque[1] = damaged.force[0].torque2;
+    pair.grains.force_x[1] = damaged.force[0].x;
+    pair.grains.force_y[1] = damaged.force[0].y;
     EXPECT_NEAR(resultants(pair, d).moment, exact, 1e-12 * std::abs(exact)) << n;
   }
 }
@@ -115,8 +116,8 @@ TEST(FlatJointBending, CentroidRuleLosesOneOverNSquaredOfTheMoment)
     const double intact = load(pair, d).moment;
     EXPECT_NEAR(intact, wanted, 1e-12 * std::abs(exact)) << n; // round-off
     break_element(pair.grains, pair.joints, 0, 0, Bond::broken_in_tension);
-    DamagedJoint &damaged = pair.joints.damaged[0];
-    damaged.bond[0] = Bond::bonded; // as if whole, by the loop over elements
+    pair.joints.damaged.set_bond(0, 0,
+                                 Bond::bonded); // as if whole, by the loop over elements
     EXPECT_NEAR(load(pair, d).moment, wanted, 1e-12 * std::abs(exact)) << n;
   }
 }

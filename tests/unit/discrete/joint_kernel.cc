@@ -84,12 +84,12 @@ KernelResult run_kernel(const KernelLevel &level, Sample &sample)
   in.tensile_strength = 1.; // many of the moved joints are over one of these
   in.cohesion = 2.;
   in.tan_friction = 0.2;
-  in.force = result.force.data();
   for (std::size_t begin = 0; begin < joints.size(); begin += intact_block)
   {
     std::int32_t over[intact_block];
     const std::size_t n =
-        level.intact(in, begin, std::min(begin + intact_block, joints.size()), over);
+        level.intact(in, begin, std::min(begin + intact_block, joints.size()),
+                     result.force.data() + begin, over);
     result.over.insert(result.over.end(), over, over + n);
   }
   return result;

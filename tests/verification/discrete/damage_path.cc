@@ -168,7 +168,7 @@ TEST(BrokenElement, ClosesOpensAndSlidesWithoutHealing)
   expect({1e-3, -3e-3, 0.}, 0., 0.);                         // open: nothing
   expect({1e-3, 5e-3, 0.}, 0., 0.);                          //
   expect({1.1, 5e-3, 0.}, 0., 0.);                           // parted for good
-  EXPECT_TRUE(pair.joints.damaged[0].removed);
+  EXPECT_TRUE(pair.joints.damaged.removed[0]);
 }
 
 TEST(BrokenElement, ShearsOnlyFromTheClosedPartOfTheStep)
@@ -335,10 +335,10 @@ TEST(RemovedJoint, LeavesItsEnergyInTheFractureSink)
   break_element(pair.grains, pair.joints, 0, 0, Bond::broken_in_shear);
   load(pair, {-1e-3, 0., 0.});
   load(pair, {-1e-3, 0.99, 0.});
-  EXPECT_FALSE(pair.joints.damaged[0].removed);
+  EXPECT_FALSE(pair.joints.damaged.removed[0]);
   const double slip = joint_energies(pair.grains, pair.joints).slip;
   load(pair, {-1e-3, 1.01, 0.}); // slid off: 2 R = 1
-  EXPECT_TRUE(pair.joints.damaged[0].removed);
+  EXPECT_TRUE(pair.joints.damaged.removed[0]);
   const JointEnergies energy = joint_energies(pair.grains, pair.joints);
   EXPECT_EQ(energy.strain, 0.);
   const double limit = 0.5 * 1., k_s = 1e3 / 2.2;
@@ -365,7 +365,7 @@ TEST(RemovedJoint, HandsOverToALinearContactWithTheInstalledGap)
     EXPECT_TRUE(contacts.contacts.empty()); // the joint still holds the pair
 
     const Resultants far = load(pair, {1., 0., 0.});
-    EXPECT_TRUE(pair.joints.damaged[0].removed);
+    EXPECT_TRUE(pair.joints.damaged.removed[0]);
     EXPECT_EQ(far.normal, 0.);
     const auto contact_force = [&](const double gap)
     {

@@ -98,14 +98,15 @@ TEST(JointTypes, SharesAreThoseAskedForAndBelongToThePair)
   bond_all(sample, strong_law());
   unbond_some(sample.joints, 0, types, 0.5, 11);
   double slits = 0., gapped = 0., sum = 0., squares = 0.;
-  for (const DamagedJoint &joint : sample.joints.damaged)
+  const DamagedJoints &damaged = sample.joints.damaged;
+  for (std::size_t k = 0; k < damaged.size(); ++k)
   {
-    EXPECT_TRUE(std::all_of(joint.bond.begin(), joint.bond.end(),
-                            [](const Bond b) { return b == Bond::unbonded; }));
-    EXPECT_GE(joint.gap, 0.);
-    (joint.gap > 0. ? gapped : slits) += 1.;
-    sum += joint.gap;
-    squares += joint.gap * joint.gap;
+    for (const int e : {0, 1, 2})
+      EXPECT_EQ(damaged.bond(k, e), Bond::unbonded);
+    EXPECT_GE(damaged.gap[k], 0.);
+    (damaged.gap[k] > 0. ? gapped : slits) += 1.;
+    sum += damaged.gap[k];
+    squares += damaged.gap[k] * damaged.gap[k];
   }
   // Binomial: four standard deviations. Of the normal, 2.3 % are cut off at 0: they are
   // slits.
