@@ -82,28 +82,10 @@ void LocalDamping::run(const Stage, const Clock &clock)
 
 void LocalDamping::damp_mesh(const double dt)
 {
-  const auto n = static_cast<std::int64_t>(mesh_force_.size());
-  const double *const velocity = mesh_->velocity.begin();
-  const double *const inverse_mass = mesh_->inverse_mass.begin();
-  const double *const force = mesh_->force.begin();
-  double *const damping = mesh_force_.data();
-  double *const before = mesh_before_.data();
-  const bool combined = !mesh_before_.empty();
-  double power = 0.; // of the last step's forces and these
-#pragma omp simd reduction(+ : power)
-  for (std::int64_t i = 0; i < n; ++i)
-  {
-    const double v = velocity[i];
-    double d = local_damping(coefficient_, force[i], v);
-    if (combined)
-    {
-      d = combined_damping(coefficient_, force[i], before[i], v);
-      before[i] = force[i];
-    }
-    d = inverse_mass[i] == 0. ? 0. : d;
-    power += (damping[i] + d) * v;
-    damping[i] = d;
-  }
+  const double power =
+      damp(static_cast<std::int64_t>(mesh_force_.size()), coefficient_,
+           mesh_->force.begin(), mesh_before_.empty() ? nullptr : mesh_before_.data(),
+           mesh_->velocity.begin(), mesh_->inverse_mass.begin(), mesh_force_.data());
   mesh_energy_ -= 0.5 * dt * power;
 }
 

@@ -20,35 +20,54 @@ void GrainDamping::start(const std::size_t n_grains)
 
 namespace
 {
-/// One component of the damping on grains begin .. end - 1.
-/// \return power of the last step's forces and these
-template <bool combined>
-double damp(const std::int64_t begin,
-            const std::int64_t end,
-            const double alpha,
-            const double *const r,
-            double *const r_before,
-            const double *const v,
-            double *const force)
+/// -1, 0 or 1, without a branch: signs of a vibration are beyond any prediction.
+inline double sign(const double x)
+{
+  return (x > 0. ? 1. : 0.) - (x < 0. ? 1. : 0.);
+}
+
+template <bool combined, bool some_held>
+double damp_some(const std::int64_t n,
+                 const double alpha,
+                 const double *const r,
+                 double *const r_before,
+                 const double *const v,
+                 const double *const inverse_mass,
+                 double *const force)
 {
   double power = 0.;
 #pragma omp simd reduction(+ : power)
-  for (std::int64_t i = begin; i < end; ++i)
+  for (std::int64_t i = 0; i < n; ++i)
   {
-    double f;
+    const double size = alpha * std::abs(r[i]);
+    double f = -size * sign(v[i]);
     if (combined)
     {
-      f = combined_damping(alpha, r[i], r_before[i], v[i]);
+      f = 0.5 * size * (sign(r[i] - r_before[i]) - sign(v[i]));
       r_before[i] = r[i];
     }
-    else
-      f = local_damping(alpha, r[i], v[i]);
+    if (some_held)
+      f = inverse_mass[i] > 0. ? f : 0.;
     power += (force[i] + f) * v[i];
     force[i] = f;
   }
   return power;
 }
 } // namespace
+
+double damp(const std::int64_t n,
+            const double alpha,
+            const double *const r,
+            double *const r_before,
+            const double *const v,
+            const double *const inverse_mass,
+            double *const force)
+{
+  const bool combined = r_before != nullptr, held = inverse_mass != nullptr;
+  const auto some = combined ? (held ? damp_some<true, true> : damp_some<true, false>)
+                             : (held ? damp_some<false, true> : damp_some<false, false>);
+  return some(n, alpha, r, r_before, v, inverse_mass, force);
+}
 
 void compute_damping(const Grains &grains,
                      const std::vector<double> &rx,
@@ -62,19 +81,22 @@ void compute_damping(const Grains &grains,
   const auto n = static_cast<std::int64_t>(grains.size());
   constexpr auto block = static_cast<std::int64_t>(damping_block);
   const std::int64_t n_blocks = (n + block - 1) / block;
-  const auto component = damping.combined ? damp<true> : damp<false>;
-  const double alpha = damping.coefficient;
+  const auto component = [&](const std::int64_t b, const std::vector<double> &r,
+                             std::vector<double> &before, const std::vector<double> &v,
+                             std::vector<double> &force)
+  {
+    const std::int64_t begin = b * block;
+    return damp(std::min(block, n - begin), damping.coefficient, r.data() + begin,
+                damping.combined ? before.data() + begin : nullptr, v.data() + begin,
+                nullptr, force.data() + begin);
+  };
 #pragma omp parallel for schedule(static) if (n >= threads_from_grains)
   for (std::int64_t b = 0; b < n_blocks; ++b)
   {
-    const std::int64_t begin = b * block, end = std::min(begin + block, n);
     const double power =
-        component(begin, end, alpha, rx.data(), damping.before_x.data(),
-                  grains.velocity_x.data(), damping.force_x.data()) +
-        component(begin, end, alpha, ry.data(), damping.before_y.data(),
-                  grains.velocity_y.data(), damping.force_y.data()) +
-        component(begin, end, alpha, torque.data(), damping.before_torque.data(),
-                  grains.spin.data(), damping.torque.data());
+        component(b, rx, damping.before_x, grains.velocity_x, damping.force_x) +
+        component(b, ry, damping.before_y, grains.velocity_y, damping.force_y) +
+        component(b, torque, damping.before_torque, grains.spin, damping.torque);
     damping.energy[b] -= 0.5 * dt * power;
   }
 }

@@ -2,6 +2,7 @@
 
 #include "discrete/grains.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace antiform::discrete
@@ -29,24 +30,20 @@ struct GrainDamping
 /// Grains whose damping energy is summed up as one.
 constexpr std::size_t damping_block = 512;
 
-// Of one degree of freedom; sgn(0) = 0; written for the vectoriser.
-inline double local_damping(const double alpha, const double force, const double velocity)
-{
-  const double size = force < 0. ? -alpha * force : alpha * force;
-  const double opposing = velocity > 0. ? -size : size;
-  return velocity == 0. ? 0. : opposing;
-}
-inline double combined_damping(const double alpha,
-                               const double force,
-                               const double force_before,
-                               const double velocity)
-{
-  const double half = force < 0. ? -0.5 * alpha * force : 0.5 * alpha * force;
-  const double change = force - force_before;
-  const double rising = change > 0. ? half : -half;
-  const double opposing = velocity > 0. ? -half : half;
-  return (change == 0. ? 0. : rising) + (velocity == 0. ? 0. : opposing);
-}
+/// One component of the damping for @p n degrees of freedom of grains or nodes.
+/// \param r                the forces that accelerate, and at the last step @p r_before,
+///                         which become these (combined; else null) [N]
+/// \param v                velocities [m/s]
+/// \param inverse_mass     no damping where it is 0; null: of all
+/// \param[in,out] force    damping forces, of the last step and then of this one [N]
+/// \return power of the last step's forces and these together [W]
+double damp(std::int64_t n,
+            double alpha,
+            const double *r,
+            double *r_before,
+            const double *v,
+            const double *inverse_mass,
+            double *force);
 
 /// Damping forces of this step from the accelerating forces @p rx, @p ry [N], @p torque
 /// [N m] and the velocities. Books the work of half a step before and half a step after
