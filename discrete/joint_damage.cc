@@ -30,6 +30,7 @@ ElementLaw<double> element_law(const Joints &joints,
   ElementLaw<double> law;
   law.normal_stiffness = joints.stiffness[j];
   law.shear_stiffness = law.normal_stiffness * c.shear_ratio;
+  law.shear_compliance = 1. / law.shear_stiffness;
   law.half_length = joints.half_length[j];
   law.n_elements = c.n_elements;
   law.element_length = 2. * law.half_length / law.n_elements;
@@ -170,10 +171,10 @@ void evaluate_damaged(const Grains &grains,
   const FlatJoint &flat = joints.groups[damaged.group[k]].law;
   const ElementLaw<double> law = element_law(joints, j, flat, cracks != nullptr);
   const double weight = joints.weight.empty() ? 1. : joints.weight[j];
-  const Deformation<double> before{before_step.gap, before_step.shear,
-                                   before_step.rotation};
+  const Deformation<double> before =
+      seen_by_law(before_step.gap, before_step.shear, before_step.rotation);
   const JointDeformation d = deformation(grains, joints, j);
-  const Deformation<double> now{d.gap, d.shear, d.rotation};
+  const Deformation<double> now = seen_by_law(d.gap, d.shear, d.rotation);
   ElementSums<double> sums;
 
   for (int e = 0; e < flat.n_elements; ++e)
@@ -182,7 +183,7 @@ void evaluate_damaged(const Grains &grains,
     const double slip = damaged.slip(k, e);
     bool bonded = damaged.bond(k, e) == Bond::bonded;
     ElementSums<double> carries;
-    double new_slip = add_element<false>(law, e, bonded, before, now, slip, carries);
+    double new_slip = add_element<false>(law, place, bonded, before, now, slip, carries);
     const Bond mode = bonded ? break_mode(law, bonded_stress(law, place, slip, before),
                                           bonded_stress(law, place, slip, now))
                              : damaged.bond(k, e);
@@ -190,7 +191,7 @@ void evaluate_damaged(const Grains &grains,
     {
       bonded = false;
       ElementSums<double> broken;
-      new_slip = add_element<true>(law, e, bonded, before, now, slip, broken);
+      new_slip = add_element<true>(law, place, bonded, before, now, slip, broken);
       const double drop = element_energy(law, place, now, slip, true) -
                           element_energy(law, place, now, new_slip, false);
       damaged.fracture_energy[k] +=
@@ -243,9 +244,10 @@ strain_energy(const Joints &joints, const DamagedJoints &damaged, const std::siz
   const ElementLaw<double> law = element_law(joints, j, flat, false);
   double energy = 0.;
   for (int e = 0; e < flat.n_elements; ++e)
-    energy += element_energy(law, element(law, e),
-                             {damaged.gap[k], damaged.shear[k], damaged.rotation[k]},
-                             damaged.slip(k, e), damaged.bond(k, e) == Bond::bonded);
+    energy +=
+        element_energy(law, element(law, e),
+                       seen_by_law(damaged.gap[k], damaged.shear[k], damaged.rotation[k]),
+                       damaged.slip(k, e), damaged.bond(k, e) == Bond::bonded);
   return energy * (joints.weight.empty() ? 1. : joints.weight[j]);
 }
 

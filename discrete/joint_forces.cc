@@ -50,8 +50,20 @@ IntactKernelInput kernel_input(Joints &joints,
 }
 } // namespace
 
-DamagedKernelInput
-damaged_input(const Grains &grains, Joints &joints, const bool look_at_strengths)
+void fill_lines(const Grains &grains, Joints &joints)
+{
+  const KernelLevel &level = kernel_level();
+  const auto n_grains = static_cast<std::int64_t>(grains.size());
+  joints.work.lines.resize(grains.size());
+  GrainLine *const lines = joints.work.lines.data();
+#pragma omp parallel for schedule(static) if (n_grains >= threads_from_grains)
+  for (std::int64_t block = 0; block < n_grains; block += 256)
+    level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
+                grains.rotation.data(), lines, block, std::min(block + 256, n_grains));
+  joints.work.lines_filled = true;
+}
+
+DamagedKernelInput damaged_input(Joints &joints, const bool look_at_strengths)
 {
   const auto pointer = [](const std::vector<double> &v)
   { return v.empty() ? nullptr : v.data(); };
@@ -61,9 +73,7 @@ damaged_input(const Grains &grains, Joints &joints, const bool look_at_strengths
     laws.push_back(element_constants(group.law, look_at_strengths));
   DamagedJoints &damaged = joints.damaged;
   DamagedKernelInput in{};
-  in.x = grains.displacement_x.data();
-  in.y = grains.displacement_y.data();
-  in.rotation = grains.rotation.data();
+  in.grains = joints.work.lines.data();
   in.first = joints.first.data();
   in.second = joints.second.data();
   in.normal_x = joints.normal_x.data();
@@ -100,7 +110,8 @@ void evaluate_broken_joints(const Grains &grains,
   if (damaged.size() == 0)
     return;
   const KernelLevel &level = kernel_level();
-  const DamagedKernelInput in = damaged_input(grains, joints, new_cracks != nullptr);
+  fill_lines(grains, joints);
+  const DamagedKernelInput in = damaged_input(joints, new_cracks != nullptr);
   const auto n_lots = static_cast<std::int64_t>((damaged.size() + 3) / 4);
   std::vector<std::int32_t> &events = joints.work.events;
   events.clear();
@@ -124,6 +135,28 @@ void evaluate_broken_joints(const Grains &grains,
 
 namespace
 {
+/// The block of group @p g that begins at joint @p begin, if the part has to do with it.
+void add_block(const Joints &joints,
+               const std::size_t g,
+               const std::size_t begin,
+               JointPart &part)
+{
+  const std::size_t end = std::min(begin + intact_block, joints.groups[g].end);
+  std::size_t n_own = 0, first = part.end, reach = part.begin;
+  for (std::size_t j = begin; j < end; ++j)
+    for (const std::int32_t i : {joints.first[j], joints.second[j]})
+      if (part.has(i))
+      {
+        ++n_own;
+        first = std::min(first, static_cast<std::size_t>(i));
+        reach = std::max(reach, static_cast<std::size_t>(i) + 1);
+      }
+  if (n_own > 0)
+    part.blocks.push_back({static_cast<std::int32_t>(begin),
+                           static_cast<std::int32_t>(end), static_cast<std::int32_t>(g),
+                           n_own < 2 * (end - begin), reach, first});
+}
+
 /// Blocks of joints and who works on them. Grains are shared out by their joints.
 void make_parts(Joints &joints, const std::size_t n_grains, const std::size_t n_parts)
 {
@@ -144,17 +177,18 @@ void make_parts(Joints &joints, const std::size_t n_grains, const std::size_t n_
     for (std::size_t g = 0; g < joints.groups.size(); ++g)
       for (std::size_t j = joints.groups[g].begin; j < joints.groups[g].end;
            j += intact_block)
-      {
-        const std::size_t end = std::min(j + intact_block, joints.groups[g].end);
-        std::size_t n_here = 0;
-        for (std::size_t k = j; k < end; ++k)
-          for (const std::int32_t i : {joints.first[k], joints.second[k]})
-            n_here += part.has(i) ? 1 : 0;
-        if (n_here > 0)
-          part.blocks.push_back({static_cast<std::int32_t>(j),
-                                 static_cast<std::int32_t>(end),
-                                 static_cast<std::int32_t>(g), n_here < 2 * (end - j)});
-      }
+        add_block(joints, g, j, part);
+  for (JointPart &part : parts)
+  {
+    std::size_t reach = part.begin, done = part.end;
+    for (JointBlock &block : part.blocks)
+      block.reach = reach = std::max(reach, block.reach);
+    for (auto block = part.blocks.rbegin(); block != part.blocks.rend(); ++block)
+    {
+      std::swap(block->done, done); // it had its own first grain
+      done = std::min(done, block->done);
+    }
+  }
 }
 
 /// As the kernel does, for the grains of @p part only.
@@ -219,12 +253,31 @@ void sum_part(const KernelLevel &level,
               const bool keep_forces)
 {
   GrainSum *const sums = joints.work.sums.data();
-  std::fill(sums + part.begin, sums + part.end, GrainSum{0., 0., 0., 0.});
+  std::size_t begun = part.begin, finished = part.begin;
+  const auto begin_sums = [&](const std::size_t end)
+  {
+    for (; begun < end; ++begun)
+      sums[begun] = {0., 0., 0., 0.};
+  };
+  const auto finish_sums = [&](const std::size_t end)
+  {
+    begin_sums(end);
+    double *const x = grains.force_x.data(), *const y = grains.force_y.data();
+    double *const torque = grains.torque.data();
+    for (; finished < end; ++finished)
+    {
+      x[finished] = sums[finished].x;
+      y[finished] = sums[finished].y;
+      torque[finished] = sums[finished].torque;
+    }
+  };
+
   part.over.clear();
   for (const JointBlock &block : part.blocks)
   {
     alignas(64) JointForce force[intact_block];
     block_forces(level, joints, block, part, force);
+    begin_sums(block.reach);
     if (block.shared)
       sum_own(joints, part, block, force, sums);
     else
@@ -234,15 +287,9 @@ void sum_part(const KernelLevel &level,
       for (std::int32_t j = block.begin; j < block.end; ++j)
         if (part.has(joints.first[j]))
           joints.force[j] = force[j - block.begin];
+    finish_sums(block.done);
   }
-  double *const x = grains.force_x.data(), *const y = grains.force_y.data();
-  double *const torque = grains.torque.data();
-  for (std::size_t i = part.begin; i < part.end; ++i)
-  {
-    x[i] = sums[i].x;
-    y[i] = sums[i].y;
-    torque[i] = sums[i].torque;
-  }
+  finish_sums(part.end);
 }
 
 /// Put @p now in the place of the force @p before of joint @p j.
@@ -306,24 +353,17 @@ void evaluate_bonds(Grains &grains,
       threaded ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   if (work.parts.size() != n_parts || work.sums.size() != grains.size())
     make_parts(joints, grains.size(), n_parts);
-  work.lines.resize(grains.size());
   work.sums.resize(grains.size());
+  if (!work.lines_filled)
+    fill_lines(grains, joints);
+  work.lines_filled = false; // the grains will have moved
   work.inputs.clear();
   for (const JointGroup &group : joints.groups)
     work.inputs.push_back(kernel_input(joints, group, work.lines, new_cracks != nullptr));
 
-    // One parallel region: threads wait for one another between lines and joints only.
-#pragma omp parallel if (threaded)
-  {
-#pragma omp for schedule(static)
-    for (std::int64_t block = 0; block < n_grains; block += 256)
-      level.lines(grains.displacement_x.data(), grains.displacement_y.data(),
-                  grains.rotation.data(), work.lines.data(), block,
-                  std::min(block + 256, n_grains));
-#pragma omp for schedule(static, 1)
-    for (std::size_t p = 0; p < n_parts; ++p)
-      sum_part(level, grains, joints, work.parts[p], keep_forces);
-  }
+#pragma omp parallel for schedule(static, 1) if (threaded)
+  for (std::size_t p = 0; p < n_parts; ++p)
+    sum_part(level, grains, joints, work.parts[p], keep_forces);
 
   work.over.clear();
   for (const JointPart &part : work.parts)

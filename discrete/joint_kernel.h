@@ -75,7 +75,7 @@ ElementConstants element_constants(const FlatJoint &law, bool look_at_strengths)
 /// Bare pointers for the full law; the state is that of DamagedJoints.
 struct DamagedKernelInput
 {
-  const double *x, *y, *rotation; ///< of the grains
+  const GrainLine *grains;
   const std::int32_t *first, *second;
   const double *normal_x, *normal_y, *length, *lever_difference, *stiffness, *half_length;
   const double *weight;                                         ///< or null
@@ -89,9 +89,11 @@ struct DamagedKernelInput
   JointForce *force;
 };
 
-/// @p look_at_strengths: breaks are wanted.
-DamagedKernelInput
-damaged_input(const Grains &grains, Joints &joints, bool look_at_strengths);
+/// @p look_at_strengths: breaks are wanted. The grain lines are those of the joints'
+/// work: fill_lines().
+DamagedKernelInput damaged_input(Joints &joints, bool look_at_strengths);
+/// Fill the grain lines of @p joints.work.
+void fill_lines(const Grains &grains, Joints &joints);
 
 /// The full law for four damaged joints, from number @p begin on. Nothing is changed, and
 /// true returned, if a bond of one of them is over a strength or a joint parts for good:

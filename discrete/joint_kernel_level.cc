@@ -185,28 +185,32 @@ void sum(const std::int32_t *first,
 }
 
 /// Lanes whose byte is @p code.
-template <class Code>
-inline LaneMask lanes_with(const Code *codes, const Code code)
+inline LaneMask lanes_with(const void *codes, const signed char code)
 {
-  LaneMask mask;
-  for (std::size_t l = 0; l < n_lanes; ++l)
-    mask[l] = codes[l] == code ? -1 : 0;
-  return mask;
+#ifdef __AVX2__ // g++ 12 would do this byte by byte
+  using Sixteen = char __attribute__((vector_size(16)));
+  std::int32_t word;
+  std::memcpy(&word, codes, sizeof word);
+  using Words = std::int32_t __attribute__((vector_size(16)));
+  return (LaneMask)__builtin_ia32_pmovsxbq256((Sixteen)Words{word, 0, 0, 0}) == code;
+#else
+  using Four = signed char __attribute__((vector_size(4)));
+  Four four;
+  std::memcpy(&four, codes, sizeof four);
+  return __builtin_convertvector(four, LaneMask) == code;
+#endif
 }
 
-inline ElementLaw<Lanes> element_laws(const DamagedKernelInput &in,
-                                      const std::int32_t *joint,
-                                      const std::int32_t *group)
+/// @p get: a constant of the four joints' groups.
+template <class Get>
+inline ElementLaw<Lanes>
+element_laws(const DamagedKernelInput &in, const std::int32_t *joint, const Get &get)
 {
   ElementLaw<Lanes> law;
   law.normal_stiffness = gather(in.stiffness, joint);
   law.half_length = gather(in.half_length, joint);
-  const ElementConstants *const l[4] = {in.laws + group[0], in.laws + group[1],
-                                        in.laws + group[2], in.laws + group[3]};
-  const auto get = [&l](const double ElementConstants::*member) {
-    return Lanes{l[0]->*member, l[1]->*member, l[2]->*member, l[3]->*member};
-  };
   law.shear_stiffness = law.normal_stiffness * get(&ElementConstants::shear_ratio);
+  law.shear_compliance = 1. / law.shear_stiffness;
   law.n_elements = get(&ElementConstants::n_elements);
   law.element_length = 2. * law.half_length / law.n_elements;
   law.moment = get(&ElementConstants::moment);
@@ -217,6 +221,57 @@ inline ElementLaw<Lanes> element_laws(const DamagedKernelInput &in,
   law.tan_friction = get(&ElementConstants::tan_friction);
   return law;
 }
+inline ElementLaw<Lanes> element_laws(const DamagedKernelInput &in,
+                                      const std::int32_t *joint,
+                                      const std::int32_t *group)
+{
+  const ElementConstants *const l[4] = {in.laws + group[0], in.laws + group[1],
+                                        in.laws + group[2], in.laws + group[3]};
+  if (l[0] == l[1] && l[0] == l[2] && l[0] == l[3])
+    return element_laws(in, joint,
+                        [&l](const double ElementConstants::*member)
+                        { return Lanes{} + l[0]->*member; });
+  return element_laws(
+      in, joint,
+      [&l](const double ElementConstants::*member) {
+        return Lanes{l[0]->*member, l[1]->*member, l[2]->*member, l[3]->*member};
+      });
+}
+
+inline bool all_have(const ElementLaw<Lanes> &law, const double n)
+{
+  return !any(law.n_elements != n);
+}
+
+/// All elements of four joints, whose bonds and slips begin at @p slots; @p N of each, or
+/// 0: up to in.n_elements, not the same number of each.
+template <int N>
+inline void add_elements(const DamagedKernelInput &in,
+                         const std::size_t slots,
+                         const ElementLaw<Lanes> &law,
+                         const Deformation<Lanes> &before,
+                         const Deformation<Lanes> &now,
+                         Lanes *new_slip,
+                         ElementSums<Lanes> &sums)
+{
+  const int n = N > 0 ? N : in.n_elements;
+#pragma GCC unroll 3
+  for (int e = 0; e < n; ++e)
+  {
+    const std::size_t slot = slots + n_lanes * static_cast<std::size_t>(e);
+    Stretch<Lanes> whole;
+    if (N > 0)
+      whole = {e * 1. * law.element_length - law.half_length,
+               e + 1 == N ? law.half_length
+                          : (e + 1.) * law.element_length - law.half_length};
+    else
+      whole = element(law, e);
+    const LaneMask bonded =
+        lanes_with(in.bond + slot, static_cast<signed char>(Bond::bonded));
+    new_slip[e] =
+        add_element<false>(law, whole, bonded, before, now, load(in.slip + slot), sums);
+  }
+}
 
 constexpr int max_elements = 32; ///< joints with more go one by one
 
@@ -224,6 +279,9 @@ bool damaged(const DamagedKernelInput &in, const std::size_t begin)
 {
   if (in.n_elements > max_elements)
     return true;
+  const LaneMask removed = ~lanes_with(in.removed + begin, 0);
+  if (!any(~removed))
+    return false;
   const std::int32_t *const joint = in.joint + begin;
   std::int32_t first[4], second[4];
   for (std::size_t l = 0; l < n_lanes; ++l)
@@ -231,46 +289,42 @@ bool damaged(const DamagedKernelInput &in, const std::size_t begin)
     first[l] = in.first[joint[l]];
     second[l] = in.second[joint[l]];
   }
-  const Lanes rotation1 = gather(in.rotation, first);
-  const Lanes rotation2 = gather(in.rotation, second);
+  const PairMotion motion = pair_motion(in.grains, first, second, n_lanes);
   const InstalledFrame<Lanes> at{gather(in.normal_x, joint), gather(in.normal_y, joint),
                                  gather(in.length, joint),
                                  gather(in.lever_difference, joint)};
-  const JointGeometry<Lanes> place = joint_geometry(
-      at, half_angles(rotation1, rotation2), gather(in.x, second) - gather(in.x, first),
-      gather(in.y, second) - gather(in.y, first));
-  Deformation<Lanes> now{place.gap, place.shear, rotation2 - rotation1};
+  const JointGeometry<Lanes> place =
+      joint_geometry(at, motion.half, motion.ux, motion.uy);
+  Lanes gap = place.gap, shear = place.shear, rotation = motion.theta;
   Lanes parted = Lanes{};
   if (in.initial_gap != nullptr)
   {
     const Lanes made = gather(in.initial_gap, joint);
-    now.gap += made;
-    now.shear += gather(in.initial_shear, joint);
-    now.rotation += gather(in.initial_rotation, joint);
+    gap += made;
+    shear += gather(in.initial_shear, joint);
+    rotation += gather(in.initial_rotation, joint);
     parted = larger(parted, made);
   }
-  const Deformation<Lanes> before{load(in.gap + begin), load(in.shear + begin),
-                                  load(in.turn + begin)};
+  const Deformation<Lanes> now = seen_by_law(gap, shear, rotation);
+  const Deformation<Lanes> before =
+      seen_by_law(load(in.gap + begin), load(in.shear + begin), load(in.turn + begin));
   const ElementLaw<Lanes> law = element_laws(in, joint, in.group + begin);
   const Lanes weight = in.weight != nullptr ? gather(in.weight, joint) : Lanes{} + 1.;
 
   Lanes new_slip[max_elements];
   ElementSums<Lanes> sums;
-  for (int e = 0; e < in.n_elements; ++e)
-  {
-    const std::size_t slot = n_lanes * (begin / n_lanes * in.n_elements + e);
-    const LaneMask bonded = lanes_with(in.bond + slot, Bond::bonded);
-    new_slip[e] =
-        add_element<false>(law, e, bonded, before, now, load(in.slip + slot), sums);
-  }
+  const std::size_t slots = begin * static_cast<std::size_t>(in.n_elements);
+  if (in.n_elements == 3 && all_have(law, 3.))
+    add_elements<3>(in, slots, law, before, now, new_slip, sums);
+  else
+    add_elements<0>(in, slots, law, before, now, new_slip, sums);
 
-  const LaneMask removed = ~lanes_with(in.removed + begin, static_cast<unsigned char>(0));
   const LaneMask event = (sums.over | parts(law, sums, now, parted)) & ~removed;
   if (any(event))
     return true;
   for (int e = 0; e < in.n_elements; ++e)
   {
-    double *const slip = in.slip + n_lanes * (begin / n_lanes * in.n_elements + e);
+    double *const slip = in.slip + slots + n_lanes * static_cast<std::size_t>(e);
     store(slip, select(removed, load(slip), new_slip[e]));
   }
   store(in.gap + begin, select(removed, before.gap, now.gap));

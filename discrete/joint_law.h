@@ -140,6 +140,7 @@ struct ElementLaw
 {
   V normal_stiffness; ///< k_n [Pa/m]
   V shear_stiffness;  ///< k_s [Pa/m]
+  V shear_compliance; ///< 1 / k_s [m/Pa]
   V half_length;      ///< R [m]
   V n_elements;
   V element_length; ///< 2 R / N [m]
@@ -148,12 +149,23 @@ struct ElementLaw
   V tensile_strength, cohesion, tan_friction; ///< infinity, 0: not looked at
 };
 
-/// Deformation that the law sees, prestress included.
+/// Deformation that the law sees, prestress included: g(s) = gap - rotation s. The faces
+/// touch, g(s) < 0, between closed_from and closed_to.
 template <class V>
 struct Deformation
 {
   V gap, shear, rotation;
+  V closed_from, closed_to; ///< along the joint's line, which they may be beyond [m]
 };
+template <class V>
+inline Deformation<V> seen_by_law(const V gap, const V shear, const V rotation)
+{
+  const V infinite = V{} + __builtin_inf(), root = gap / rotation;
+  const auto falls = rotation > 0., rises = rotation < 0.;
+  const V elsewhere = select(rises | (gap < 0.), -infinite, infinite);
+  return {gap, shear, rotation, select(falls, root, elsewhere),
+          select(rises, root, infinite)};
+}
 
 /// A stretch of the joint's line, from its centre along the tangent.
 template <class V>
@@ -170,18 +182,12 @@ inline Stretch<V> element(const ElementLaw<V> &law, const double e)
           select(law.n_elements <= e + 1., R, (e + 1.) * l - R)};
 }
 
-/// The part of an element whose faces touch: g(s) = gap - rotation s < 0. @p root of it:
-/// gap / rotation.
+/// The part of an element whose faces touch.
 template <class V>
-inline Stretch<V>
-closed_part(const Stretch<V> &element, const Deformation<V> &d, const V root)
+inline Stretch<V> closed_part(const Stretch<V> &element, const Deformation<V> &d)
 {
-  const auto open_a = d.gap - d.rotation * element.a >= 0.;
-  const auto open_b = d.gap - d.rotation * element.b >= 0.;
-  const V cut = smaller<V>(larger<V>(root, element.a), element.b); // of its rounding
-  const V a = select(open_a, cut, element.a);
-  return {select(open_a & open_b, element.b, a),
-          select(open_b & !open_a, cut, element.b)};
+  const V a = smaller<V>(larger<V>(d.closed_from, element.a), element.b);
+  return {a, larger<V>(smaller<V>(d.closed_to, element.b), a)};
 }
 
 /// Normal force and moment of a stretch that carries k_n g(s).
@@ -213,11 +219,12 @@ struct Friction
 /// \param before,now        deformation at the last step and at this
 /// \param old_active,active closed length then and now
 /// \param slip              plastic slip then
-/// \param limit             of the shear force now
+/// \param limit             of the shear force now; not looked at where @p held
 /// The force is k_s times closed length times elastic slip. What closes further carries
 /// nothing at first; what opens gives up its share, as sliding under a vanishing limit.
-/// An element that closes within the step sticks from there on.
-template <class V>
+/// An element that closes within the step sticks from there on. An open one has the limit
+/// 0 and ends with no elastic slip.
+template <class V, class Mask>
 inline Friction<V> friction(const ElementLaw<V> &law,
                             const Stretch<V> &whole,
                             const Deformation<V> &before,
@@ -225,7 +232,8 @@ inline Friction<V> friction(const ElementLaw<V> &law,
                             const V old_active,
                             const V active,
                             const V slip,
-                            const V limit)
+                            const V limit,
+                            const Mask held)
 {
   V old_shear = before.shear, start = slip;
   const auto closes = (old_active == 0.) & (active > 0.);
@@ -241,27 +249,22 @@ inline Friction<V> friction(const ElementLaw<V> &law,
     start = select(closes, closing, start);
   }
 
-  const V old_stretch = old_shear - start;
-  const V inverse = 1. / active; // not used where it is open
-  const auto grows = active > old_active;
-  const V stretch = select(grows, old_stretch * (old_active * inverse), old_stretch);
-  const V stiffness = law.shear_stiffness * active;
-  const V trial_slip = select(grows, old_shear - stretch, start);
-  const V trial = stiffness * (now.shear - trial_slip);
-  const V excess = absolute(trial) - limit;
-  const V increment = excess * inverse / law.shear_stiffness;
+  constexpr double nothing = 1e-200; // instead of dividing by 0
+  const V inverse = 1. / larger<V>(active, V{} + nothing);
+  const V old_elastic = old_shear - start;
+  const V elastic =
+      old_elastic * select(active > old_active, old_active * inverse, V{} + 1.);
+  const V trial = elastic + (now.shear - old_shear);
+  const V most =
+      select(held, V{} + __builtin_inf(), limit * inverse * law.shear_compliance);
+  const V stays = larger<V>(smaller<V>(trial, most), -most);
 
-  const auto slides = excess > 0., open = active == 0.;
-  const V opposing = select(trial < 0., -limit, limit);
-  const V forward = select(trial < 0., -increment, increment);
-  const V given_up = 0.5 * (law.shear_stiffness * old_active * old_stretch * old_stretch -
-                            stiffness * stretch * stretch);
-  const V rubbed = 0.5 * (absolute(stiffness * stretch) + limit) * increment;
-  Friction<V> result;
-  result.force = select(open, V{}, select(slides, opposing, trial));
-  result.slip = select(open, now.shear, select(slides, trial_slip + forward, trial_slip));
-  result.dissipated = given_up + select(slides & !open, rubbed, V{});
-  return result;
+  const V stiffness = law.shear_stiffness * active;
+  const V given_up = law.shear_stiffness * old_active * old_elastic * old_elastic -
+                     stiffness * elastic * elastic;
+  const V rubbed = (absolute(stiffness * elastic) + limit) * absolute(trial - stays);
+  return {stiffness * stays, select(held, slip, now.shear - stays),
+          0.5 * (given_up + rubbed)};
 }
 
 /// What the elements of a joint add up to.
@@ -274,21 +277,20 @@ struct ElementSums
   decltype(V{} > V{}) over{};       ///< one of them is over a strength
 };
 
-/// Element @p e of a joint in this step, its bond being as it is. @p just_broken: what of
-/// it is closed was closed at the last step as well.
-/// \return its plastic slip after the step
+/// Element @p whole of a joint in this step, its bond being as it is. @p just_broken:
+/// what of it is closed was closed at the last step as well. \return its plastic slip
+/// after the step
 template <bool just_broken, class V, class Mask>
 inline V add_element(const ElementLaw<V> &law,
-                     const int e,
+                     const Stretch<V> &whole,
                      const Mask bonded,
                      const Deformation<V> &before,
                      const Deformation<V> &now,
                      const V slip,
                      ElementSums<V> &sums)
 {
-  const Stretch<V> whole = element(law, e);
-  const Stretch<V> closed = closed_part(whole, now, now.gap / now.rotation);
-  const Stretch<V> old_closed = closed_part(whole, before, before.gap / before.rotation);
+  const Stretch<V> closed = closed_part(whole, now);
+  const Stretch<V> old_closed = closed_part(whole, before);
   const Stretch<V> part{select(bonded, whole.a, closed.a),
                         select(bonded, whole.b, closed.b)};
   const V active = part.b - part.a;
@@ -297,9 +299,8 @@ inline V add_element(const ElementLaw<V> &law,
   const NormalResultant<V> normal = normal_resultant(law, now, part);
   const V limit =
       law.residual_friction * absolute(normal.force) + law.residual_cohesion * active;
-  const V none = V{} + __builtin_inf();
-  const Friction<V> rubbing = friction(law, whole, before, now, old_active, active, slip,
-                                       select(bonded, none, limit));
+  const Friction<V> rubbing =
+      friction(law, whole, before, now, old_active, active, slip, limit, bonded);
 
   const V stress =
       law.normal_stiffness * (now.gap - now.rotation * (0.5 * (whole.a + whole.b)));

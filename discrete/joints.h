@@ -100,6 +100,9 @@ struct JointBlock
   std::int32_t begin = 0, end = 0;
   std::int32_t group = 0;
   bool shared = false; ///< some of its grains belong to another part
+  // Of the part's own grains, for which sums are begun and finished while they are near:
+  std::size_t reach = 0; ///< one past the last one that a joint up to here touches
+  std::size_t done = 0;  ///< no later joint touches one below
 };
 
 /// Grains begin .. end - 1 and all blocks that hold a joint of theirs, ascending: what
@@ -125,6 +128,7 @@ struct ElementConstants;
 struct JointWork
 {
   std::vector<GrainLine> lines;
+  bool lines_filled = false; ///< by evaluate_broken_joints(), for evaluate_bonds()
   std::vector<GrainSum> sums;
   std::vector<IntactKernelInput> inputs;
   std::vector<ElementConstants> laws;
@@ -225,7 +229,8 @@ struct StepTime
 };
 
 /// The full law for every joint that was damaged before this step: friction, closing and
-/// opening, further breaks. Results stay in the records until sum_joint_forces().
+/// opening, further breaks. Results stay in the records for evaluate_bonds(), which
+/// follows before anything moves.
 /// \param[in,out] new_cracks breaks are appended in order of damage; null: none is tested
 void evaluate_broken_joints(const Grains &grains,
                             Joints &joints,

@@ -46,7 +46,11 @@ inline bool any(const bool mask)
 }
 inline bool any(const LaneMask mask)
 {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256((Lanes)mask) != 0;
+#else
   return ((mask[0] | mask[1]) | (mask[2] | mask[3])) != 0;
+#endif
 }
 
 inline Lanes load(const double *from)

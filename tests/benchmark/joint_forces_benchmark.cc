@@ -219,7 +219,7 @@ Speed measure_kernels(Sample &sample, const KernelLevel &level, const int repeti
   Grains &grains = sample.grains;
   Joints &joints = sample.joints;
   JointWork &work = joints.work;
-  const DamagedKernelInput damaged = damaged_input(grains, joints, true);
+  const DamagedKernelInput damaged = damaged_input(joints, true);
   const auto step = [&]
   {
     for (std::size_t k = 0; k < joints.damaged.size(); k += 4)

@@ -205,7 +205,8 @@ TEST(DamagedKernel, GivesTheBitsOfTheScalarLawOnEveryLevel)
         for (const KernelLevel &level : supported_kernel_levels())
         {
           outcomes.push_back(joints);
-          const DamagedKernelInput in = damaged_input(grains, outcomes.back(), false);
+          fill_lines(grains, outcomes.back());
+          const DamagedKernelInput in = damaged_input(outcomes.back(), false);
           for (std::size_t k = 0; k < joints.damaged.size(); k += 4)
             ASSERT_FALSE(level.damaged(in, k));
         }
@@ -226,7 +227,8 @@ TEST(DamagedKernel, LeavesJointsInWhichSomethingBreaksAsTheyWere)
   Joints &joints = shaken.sample.joints;
   shaken.move_to(3.); // at once: many strengths are passed
   const Joints before = joints;
-  const DamagedKernelInput in = damaged_input(shaken.sample.grains, joints, true);
+  fill_lines(shaken.sample.grains, joints);
+  const DamagedKernelInput in = damaged_input(joints, true);
   std::size_t n_left = 0;
   for (std::size_t k = 0; k < joints.damaged.size(); k += 4)
     if (kernel_level().damaged(in, k))
