@@ -183,6 +183,7 @@ struct ExplicitRun
   Contacts contacts;
   std::vector<Wall> walls;
   GrainDamping damping;
+  Vec2 gravity; ///< [m/s^2]; no part of the energy terms
   bool has_contacts = false;
   bool breaks = true;
   std::uint64_t step = 0;
@@ -208,6 +209,12 @@ struct ExplicitRun
     }
     for (Wall &wall : walls)
       add_wall_forces(grains, wall);
+    if (gravity.x != 0. || gravity.y != 0.)
+      for (std::size_t i = 0; i < grains.size(); ++i)
+      {
+        grains.force_x[i] += grains.mass[i] * gravity.x;
+        grains.force_y[i] += grains.mass[i] * gravity.y;
+      }
   }
 
   /// Forces, damping, kick; the state is then that of the time of the positions. A wall
