@@ -1,27 +1,9 @@
 #include "coupling/specimen_components.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace antiform::coupling
 {
-double servo_speed(const discrete::Wall &wall,
-                   const double area,
-                   const double pressure,
-                   const double gain,
-                   const double limit,
-                   const double dt)
-{
-  double stiffness = wall.pressing_stiffness;
-  if (stiffness == 0.) // nothing presses yet: as if all did
-    for (const discrete::WallContact &contact : wall.contacts)
-      stiffness += contact.weight * contact.stiffness;
-  if (stiffness == 0.)
-    return 0.;
-  const double speed = gain * (pressure * area - wall.reaction) / (stiffness * dt);
-  return std::clamp(speed, -limit, limit);
-}
-
 void ServoWalls::run(const Stage stage, const Clock &clock)
 {
   const double half = 0.5 * clock.dt;

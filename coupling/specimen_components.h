@@ -11,19 +11,6 @@
 
 namespace antiform::coupling
 {
-/// A wall that follows a pressure (Itasca's servo): its speed v = beta A / (K dt) (p -
-/// measured), K the stiffness of the contacts that press, so that one step changes the
-/// stress by the share beta of the error. Inward positive [m/s].
-/// \param area     of the wall's face [m^2]
-/// \param pressure wanted, compression positive [Pa]
-/// \param limit    of the speed [m/s]
-double servo_speed(const discrete::Wall &wall,
-                   double area,
-                   double pressure,
-                   double gain,
-                   double limit,
-                   double dt);
-
 /// Displacement, velocity and work of walls, named "GROUP/0/displacement" and so on.
 void visit_walls(StateArchive &archive,
                  const std::string &group,

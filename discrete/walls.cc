@@ -120,4 +120,21 @@ double wall_energy(const Grains &grains, const Wall &wall)
   }
   return energy;
 }
+
+double servo_speed(const Wall &wall,
+                   const double area,
+                   const double pressure,
+                   const double gain,
+                   const double limit,
+                   const double dt)
+{
+  double stiffness = wall.pressing_stiffness;
+  if (stiffness == 0.) // nothing presses yet: as if all did
+    for (const WallContact &contact : wall.contacts)
+      stiffness += contact.weight * contact.stiffness;
+  if (stiffness == 0.)
+    return 0.;
+  const double speed = gain * (pressure * area - wall.reaction) / (stiffness * dt);
+  return std::clamp(speed, -limit, limit);
+}
 } // namespace antiform::discrete

@@ -60,4 +60,13 @@ double region_reaction(const Grains &grains, const Wall &wall, int region);
 
 /// Strain energy of the wall's contacts [J].
 double wall_energy(const Grains &grains, const Wall &wall);
+
+/// A wall that follows a pressure (Itasca's servo): its speed v = beta A / (K dt) (p -
+/// measured), K the stiffness of the contacts that press, so that one step changes the
+/// stress by the share beta of the error. Inward positive [m/s].
+/// \param area     of the wall's face [m^2]
+/// \param pressure wanted, compression positive [Pa]
+/// \param limit    of the speed [m/s]
+double servo_speed(
+    const Wall &wall, double area, double pressure, double gain, double limit, double dt);
 } // namespace antiform::discrete
