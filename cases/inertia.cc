@@ -1,6 +1,7 @@
 #include "cases/inertia.h"
 
 #include "cases/scene.h"
+#include "continuum/errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,21 @@ StiffnessSums grain_stiffness(const Scene &scene)
   return sums;
 }
 
+namespace
+{
+/// Bound for the grains at their present masses, with the walls as springs to the ground.
+double grain_step(const Scene &scene)
+{
+  const coupling::GrainState &state = scene.grains->state;
+  std::vector<double> ground(state.grains.size(), 0.);
+  for (const std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
+    for (const discrete::Wall &wall : *walls)
+      for (const discrete::WallContact &contact : wall.contacts)
+        ground[contact.grain] += contact.stiffness * contact.weight;
+  return discrete::stable_step(state.grains, state.joints, scene.contacts, ground);
+}
+} // namespace
+
 double after_search(Scene &scene)
 {
   discrete::Grains &all = scene.grains->state.grains;
@@ -56,13 +72,21 @@ double after_search(Scene &scene)
             contact.weight =
                 scene.bridging->weight().grains(all.reference(contact.grain));
     }
-  if (scene.parameters.run.driver != "quasi-static")
-    return 0.;
-  discrete::Grains &grains = scene.grains->state.grains;
-  const double lost = discrete::rescale_density(grains, grain_stiffness(scene),
-                                                scene.mass_weight, scene.dt0);
-  if (scene.bridging && !scene.bridging->is_factorised_for(grains))
-    scene.bridging->factorise(grains, scene.mesh->inverse_mass);
+  double lost = 0.;
+  if (scene.parameters.run.driver == "quasi-static")
+  {
+    lost = discrete::rescale_density(all, grain_stiffness(scene), scene.mass_weight,
+                                     scene.dt0);
+    if (scene.bridging && !scene.bridging->is_factorised_for(all))
+      scene.bridging->factorise(all, scene.mesh->inverse_mass);
+  }
+  const coupling::Clock &clock = scene.simulation->clock();
+  const double limit = grain_step(scene);
+  if (clock.dt > limit)
+    throw NumericalError("contacts",
+                         "grains that have come into contact have made the step "
+                         "unstable; give a smaller 'Run / Step safety'",
+                         clock.dt, limit, clock.step);
   return lost;
 }
 
@@ -92,15 +116,7 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
     const StiffnessSums sums = grain_stiffness(scene);
     scene.dt0 = scaled ? softest_step(scene, sums) : 0.;
     discrete::scale_density(grains, sums, scene.mass_weight, scene.dt0);
-    StiffnessSums loose{std::vector<double>(grains.size(), 0.),
-                        std::vector<double>(grains.size(), 0.)};
-    add_contact_stiffness(scene, loose);
-    std::vector<double> &extra = loose.translation; // an interface without friction
-    for (const std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
-      for (const discrete::Wall &wall : *walls)
-        for (const discrete::WallContact &contact : wall.contacts)
-          extra[contact.grain] += contact.stiffness * contact.weight;
-    step = discrete::stable_step(grains, scene.grains->state.joints, extra);
+    step = grain_step(scene);
   }
   if (scene.mesh)
   {

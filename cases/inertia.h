@@ -20,7 +20,8 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
 /// What follows a search for contacts: walls hold the grains that have come near them,
 /// and the inertial masses of a quasi-static run follow the contacts that grains carry
 /// now, so that none is too light for the step (discrete::rescale_density()); the
-/// bridging domain knows of it. \return kinetic energy lost [J]
+/// bridging domain knows of it. Throws NumericalError when the step is no longer below
+/// the rigorous bound. \return kinetic energy lost [J]
 double after_search(Scene &scene);
 
 /// Time of an axial wave along the layer with its inertial masses [s].

@@ -85,4 +85,12 @@ ContactEnergies contact_energies(const Grains &grains, const Contacts &contacts)
 /// Normal and shear stiffness [N/m] of a pair: k_n = A E / L, A = 2 min(R), L = R_1 +
 /// R_2.
 double normal_stiffness(const LinearContact &law, double radius_1, double radius_2);
+
+/// Stable step of joints, contacts and springs to the ground together, as stable_step()
+/// of joints alone. Every candidate counts as if it touched, so that the bound holds from
+/// one search to the next; joints that are removed do not. Dashpots are not counted.
+double stable_step(const Grains &grains,
+                   const Joints &joints,
+                   const Contacts &contacts,
+                   const std::vector<double> &extra = {});
 } // namespace antiform::discrete

@@ -139,40 +139,6 @@ stiffness_sums(const Grains &grains, const Joints &joints, const bool weighted)
   return sums;
 }
 
-double
-stable_step(const Grains &grains, const Joints &joints, const std::vector<double> &extra)
-{
-  StiffnessSums sums = stiffness_sums(grains, joints, true);
-  if (!extra.empty())
-    for (std::size_t i = 0; i < grains.size(); ++i)
-      sums.translation[i] += extra[i];
-
-  // Joint b has the share k_b / sum(k) of its grains' inertia, so that 1 / share of mass
-  // is sum(k) / (k_b m). Normal motion, and shear with rotation, are uncoupled modes of
-  // it.
-  double largest = 0.;
-  for (const JointGroup &group : joints.groups)
-    for (std::size_t j = group.begin; j < group.end; ++j)
-    {
-      const double full = 2. * joints.half_length[j];
-      const double normal =
-          joints.stiffness[j] * full * (joints.weight.empty() ? 1. : joints.weight[j]);
-      const double shear = normal / group.law.stiffness_ratio;
-      double translation = 0., rotation = 0.;
-      for (const int side : {0, 1})
-      {
-        const std::size_t i = side == 0 ? joints.first[j] : joints.second[j];
-        translation += sums.translation[i] * grains.inverse_mass[i] / (normal + shear);
-        rotation += sums.rotation[i] * grains.inverse_inertia[i];
-      }
-      largest = std::max({largest, normal * translation, shear * translation + rotation});
-    }
-  if (!extra.empty())
-    for (std::size_t i = 0; i < grains.size(); ++i)
-      largest = std::max(largest, sums.translation[i] * grains.inverse_mass[i]);
-  return 2. / std::sqrt(largest);
-}
-
 std::vector<std::pair<std::int32_t, std::int32_t>>
 pairs_within(const Grains &grains,
              const double installation_gap,
