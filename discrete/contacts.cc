@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace antiform::discrete
 {
@@ -93,8 +94,15 @@ void search_contacts(const Grains &grains, const Joints &joints, Contacts &conta
       contact.second = j;
       contact.reference_gap =
           joint.state == 2 ? joint.installed_gap : reference_gap(contacts, i, j);
-      contact.gap = norm(grains.position(j) - grains.position(i)) - grains.radius[i] -
-                    grains.radius[j] - contact.reference_gap;
+      const double distance = norm(grains.position(j) - grains.position(i));
+      // A contact pushes along the branch; of no length, it would push with a NaN.
+      if (!(distance > 0.))
+        throw std::invalid_argument("Contacts: the centres of grains " +
+                                    std::to_string(i) + " and " + std::to_string(j) +
+                                    " coincide: nothing tells which way they push each "
+                                    "other. Take one of them out.");
+      contact.gap =
+          distance - grains.radius[i] - grains.radius[j] - contact.reference_gap;
       if (contact.gap <= contacts.margin)
         found.push_back(contact);
     }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace antiform::discrete
 {
@@ -28,6 +30,13 @@ void Joints::add(const Grains &grains,
   assert(!groups.empty() && i != j);
   const Vec2 branch = grains.position(j) - grains.position(i);
   const double distance = norm(branch);
+  // A joint's normal is the direction of its branch; rounding takes it over below this.
+  if (!(distance > 1e-9 * std::min(grains.radius[i], grains.radius[j])))
+    throw std::invalid_argument(
+        "Joints: the centres of grains " + std::to_string(i) + " and " +
+        std::to_string(j) + " coincide at (" + std::to_string(grains.position(i).x) +
+        ", " + std::to_string(grains.position(i).y) +
+        ") m: a joint between them has no direction. Take one of them out.");
   first.push_back(i);
   second.push_back(j);
   normal_x.push_back(branch.x / distance);

@@ -196,7 +196,8 @@ struct Joints
 
   /// Bond grains @p i and @p j where they stand (gap or overlap alike), stress-free.
   /// Appends to the last group. The stiffness of two different moduli is that of two
-  /// springs in series: k_n = 1 / (R_i / E_i + R_j / E_j).
+  /// springs in series: k_n = 1 / (R_i / E_i + R_j / E_j). Throws std::invalid_argument
+  /// when the two centres coincide.
   void add(const Grains &grains,
            std::int32_t i,
            std::int32_t j,
