@@ -87,7 +87,7 @@ HoekBrownFit fit_hoek_brown(const std::vector<StrengthPoint> &points)
 
 namespace
 {
-using Groups = std::map<std::string, std::vector<StrengthPoint>>;
+using Groups = StrengthTable;
 
 std::vector<std::string> split(const std::string &line)
 {
@@ -173,6 +173,18 @@ void read_run(const std::string &directory,
                        "confining_pressure nor tensile_strength.");
 }
 
+} // namespace
+
+StrengthTable read_strength_table(const std::string &file,
+                                  std::vector<std::string> &problems)
+{
+  StrengthTable table;
+  read_table(file, table, problems);
+  return table;
+}
+
+namespace
+{
 Json envelope_of(const std::vector<StrengthPoint> &points)
 {
   // Tension tests are listed, and left out of the lines, which are those of compression.

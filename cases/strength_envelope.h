@@ -1,6 +1,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct HoekBrownFit
 /// fewer than two confinements, or a line that no rock has.
 MohrCoulombFit fit_mohr_coulomb(const std::vector<StrengthPoint> &points);
 HoekBrownFit fit_hoek_brown(const std::vector<StrengthPoint> &points);
+
+/// Tests by site; by the file's name without a column of that name.
+using StrengthTable = std::map<std::string, std::vector<StrengthPoint>>;
+/// Read a table (.csv) with columns sigma3_MPa, sigma1_MPa and perhaps site. What cannot
+/// be read is added to @p problems with file and line.
+StrengthTable read_strength_table(const std::string &file,
+                                  std::vector<std::string> &problems);
 
 /// Fit and print the envelopes of each group of tests. \param sources directories of
 /// finished laboratory runs (together one group), or tables (.csv) with columns
