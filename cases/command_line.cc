@@ -20,14 +20,19 @@ void add_deck(CLI::App &command, RunOptions &run)
       ->type_name("ENTRY=VALUE");
 }
 
+void add_output(CLI::App &command, RunOptions &run)
+{
+  command.add_option("-o,--output", run.output, "output directory (DECK-output)")
+      ->check([](const std::string &text)
+              { return text.empty() ? "give a directory" : ""; })
+      ->type_name("DIR");
+}
+
 void add_run(CLI::App &app, CommandLine &line)
 {
   CLI::App &command = *app.add_subcommand("run", "run a deck");
   add_deck(command, line.run);
-  command.add_option("-o,--output", line.run.output, "output directory (DECK-output)")
-      ->check([](const std::string &text)
-              { return text.empty() ? "give a directory" : ""; })
-      ->type_name("DIR");
+  add_output(command, line.run);
   command
       .add_option("--threads", line.run.threads, "threads of each rank (OMP_NUM_THREADS)")
       ->check(CLI::Range(1, 1024))
@@ -48,6 +53,24 @@ void add_run(CLI::App &app, CommandLine &line)
       "1 error of the deck, an option or a file, 2 error of the physics,\n3 interrupted: "
       "'antiform run DECK -o DIR --resume' goes on.\n");
   command.callback([&line] { line.command = CommandLine::Command::run; });
+}
+
+void add_calibrate(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "calibrate", "micro-parameters of the grains from laboratory targets");
+  add_deck(command, line.run);
+  add_output(command, line.run);
+  command.add_flag("--resume", line.run.resume,
+                   "go on in the output directory; finished trials are not run again");
+  command.footer(
+      "Example:\n  antiform calibrate cases/laboratory/calibrate-rock-1.prm -o rock-1\n"
+      "  antiform calibrate cases/laboratory/calibrate-rock-1.prm -o rock-1 --resume\n"
+      "  /usr/bin/python3 cases/calibration_plot.py rock-1\n"
+      "'antiform check DECK' says beforehand how many trials and how long.\n"
+      "Exit status: 0 targets met on fresh packings, 1 error of the deck, an option or a "
+      "file,\n2 not met (the best rock is written) or a trial failed, 3 interrupted.\n");
+  command.callback([&line] { line.command = CommandLine::Command::calibrate; });
 }
 
 void add_check(CLI::App &app, CommandLine &line)
@@ -87,8 +110,7 @@ void add_envelope(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::envelope; });
 }
 
-const std::vector<std::string> planned = {"study", "compare", "calibrate", "theory",
-                                          "report"};
+const std::vector<std::string> planned = {"study", "compare", "theory", "report"};
 } // namespace
 
 CommandLine parse_command_line(const std::vector<std::string> &arguments)
@@ -97,7 +119,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
       std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
     throw InputError({"antiform " + arguments.front() +
                       ": does not exist yet in this version. What exists: run, check, "
-                      "parameters, envelope."});
+                      "parameters, envelope, calibrate."});
 
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
@@ -109,6 +131,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_check(app, line);
   add_parameters(app, line);
   add_envelope(app, line);
+  add_calibrate(app, line);
 
   try
   {

@@ -16,11 +16,12 @@ struct CommandLine
     run,
     check,
     parameters,
-    envelope
+    envelope,
+    calibrate
   };
   Command command = Command::help;
   std::string help_text;
-  RunOptions run;                   ///< deck and overrides of `check` too
+  RunOptions run;                   ///< deck and overrides of `check` and `calibrate` too
   bool json = false;                ///< check --json, envelope --json
   bool markdown = false;            ///< parameters --markdown
   std::string name;                 ///< parameters NAME

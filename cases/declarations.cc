@@ -141,6 +141,36 @@ std::unique_ptr<dealii::Patterns::PatternBase> Number::clone() const
   return std::make_unique<Number>(*this);
 }
 
+// --- NumberList --------------------------------------------------------------------
+
+std::vector<std::string> NumberList::split(const std::string &text)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');)
+    parts.push_back(tidy(part));
+  return parts;
+}
+
+bool NumberList::match(const std::string &text) const
+{
+  const std::vector<std::string> parts = split(text);
+  return std::all_of(parts.begin(), parts.end(),
+                     [this](const std::string &part) { return range_.match(part); });
+}
+
+std::string NumberList::description(OutputStyle) const
+{
+  // "a number > 0" in the plural
+  const std::string one = range_.description();
+  return "numbers" + one.substr(one.find("number") + 6) + ", with commas between them";
+}
+
+std::unique_ptr<dealii::Patterns::PatternBase> NumberList::clone() const
+{
+  return std::make_unique<NumberList>(*this);
+}
+
 // --- Declarations ------------------------------------------------------------------
 
 void Declarations::enter(const std::string &section)
@@ -230,6 +260,26 @@ void Declarations::list(const std::string &name,
           });
 }
 
+void Declarations::numbers(const std::string &name,
+                           std::vector<double> &value,
+                           const std::string &documentation,
+                           const Number &range)
+{
+  std::vector<std::string> words;
+  for (const double number : value)
+    words.push_back(exact_text(number));
+  declare(name, join(words), NumberList(range), documentation,
+          [&value](const std::string &text)
+          {
+            value.clear();
+            for (const std::string &part : NumberList::split(text))
+            {
+              value.emplace_back();
+              parse_number(part, value.back());
+            }
+          });
+}
+
 void Declarations::angle(const std::string &name,
                          double &tangent,
                          const std::string &documentation)
@@ -268,7 +318,8 @@ std::string range_in_words(const Declarations::Entry &entry)
 {
   if (dynamic_cast<const dealii::Patterns::Bool *>(entry.pattern.get()) != nullptr)
     return "true or false";
-  if (dynamic_cast<const Number *>(entry.pattern.get()) != nullptr)
+  if (dynamic_cast<const Number *>(entry.pattern.get()) != nullptr ||
+      dynamic_cast<const NumberList *>(entry.pattern.get()) != nullptr)
     return entry.pattern->description();
   if (dynamic_cast<const dealii::Patterns::Selection *>(entry.pattern.get()) == nullptr)
     return "a text";

@@ -32,6 +32,23 @@ private:
   bool lower_open_ = false, upper_open_ = false, whole_ = false;
 };
 
+/// Numbers of a range between commas; none at all is a list too.
+class NumberList final : public dealii::Patterns::PatternBase
+{
+public:
+  explicit NumberList(const Number &range)
+      : range_(range)
+  {
+  }
+  bool match(const std::string &text) const override;
+  std::string description(OutputStyle style = Machine) const override;
+  std::unique_ptr<PatternBase> clone() const override;
+  static std::vector<std::string> split(const std::string &text);
+
+private:
+  Number range_;
+};
+
 /// The number that @p text is, all of it; false when it is none, or not finite.
 bool parse_number(const std::string &text, double &number);
 
@@ -84,6 +101,10 @@ public:
   void list(const std::string &name,
             std::vector<std::string> &value,
             const std::string &documentation);
+  void numbers(const std::string &name,
+               std::vector<double> &value,
+               const std::string &documentation,
+               const Number &range);
   /// In the deck an angle in degrees, in the struct its tangent.
   void angle(const std::string &name, double &tangent, const std::string &documentation);
 
@@ -126,6 +147,9 @@ void declare_parameters(Parameters &parameters,
                         const std::vector<std::string> &sections,
                         Declarations &declarations);
 
+/// The entries of the section Calibration.
+void declare(CalibrationParameters &calibration, Declarations &entries);
+
 /// A value that may stand alone but not in this scene.
 struct Finding
 {
@@ -134,4 +158,6 @@ struct Finding
 };
 /// Everything that is wrong between the values of a scene.
 std::vector<Finding> check_parameters(const Parameters &parameters);
+/// The part of it that a calibration adds.
+void check_calibration(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases

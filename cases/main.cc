@@ -1,3 +1,4 @@
+#include "cases/calibrate.h"
 #include "cases/command_line.h"
 #include "cases/output_directory.h"
 #include "cases/strength_envelope.h"
@@ -44,6 +45,7 @@ int run_deck(RunOptions options, MPI_Comm communicator)
   Parameters parameters;
   together(communicator,
            [&] { parameters = read_deck(options.deck, options.overrides); });
+  demand_calibration(parameters, false);
   demand_one_rank_of_grains(parameters, communicator); // the same on all of them
   together(communicator,
            [&]
@@ -59,11 +61,30 @@ int run_deck(RunOptions options, MPI_Comm communicator)
   return run(parameters, options, communicator);
 }
 
+int check_deck(const CommandLine &line)
+{
+  const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
+  return parameters.has("calibration")
+             ? check_cost_of_calibration(parameters, line.json, std::cout)
+             : check(parameters, line.json, std::cout);
+}
+
+int calibrate_deck(const CommandLine &line)
+{
+  const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
+  demand_calibration(parameters, true);
+  return calibrate(parameters, line.run);
+}
+
 int execute(const CommandLine &line, MPI_Comm communicator)
 {
   if (line.command == CommandLine::Command::run)
     return run_deck(line.run, communicator);
 
+  if (line.command == CommandLine::Command::calibrate &&
+      ranks::n_mpi_processes(communicator) > 1)
+    throw InputError({"antiform calibrate runs its trials as processes of its own, as "
+                      "many at once as there are cores. Start it without mpirun."});
   int status = 0;
   together(communicator,
            [&]
@@ -73,8 +94,9 @@ int execute(const CommandLine &line, MPI_Comm communicator)
              if (line.command == CommandLine::Command::help)
                std::cout << line.help_text;
              else if (line.command == CommandLine::Command::check)
-               status = check(read_deck(line.run.deck, line.run.overrides), line.json,
-                              std::cout);
+               status = check_deck(line);
+             else if (line.command == CommandLine::Command::calibrate)
+               status = calibrate_deck(line);
              else if (line.command == CommandLine::Command::envelope)
                status = print_envelopes(line.sources, line.json, std::cout);
              else

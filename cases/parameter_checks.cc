@@ -328,6 +328,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.is_bridged())
     check_bridging(p, findings);
   check_run(p, findings);
+  if (p.has("calibration"))
+    check_calibration(p, findings);
   if (p.has("layer") && findings.empty()) // else the geometry may not exist
     check_memory(p, findings);
   return findings;

@@ -356,7 +356,7 @@ const std::vector<std::string> &all_components()
 {
   static const std::vector<std::string> names = {
       "layer",   "matrix", "foundation",  "surface pressure",
-      "gravity", "walls",  "servo walls", "damping"};
+      "gravity", "walls",  "servo walls", "damping", "calibration"};
   return names;
 }
 
@@ -372,6 +372,7 @@ const std::vector<Section> &all_sections()
       {"Walls", "component walls"},
       {"Servo walls", "component servo walls"},
       {"Damping", "component damping"},
+      {"Calibration", "component calibration"},
       {"Run", "always"},
       {"Output", "always"}};
   return sections;
@@ -396,7 +397,8 @@ void declare_parameters(Parameters &p,
   entries.list(
       "Components", p.components,
       "What exists in the scene, a list: layer, matrix, foundation, surface "
-      "pressure, gravity, walls, servo walls, damping. Only their sections are read.");
+      "pressure, gravity, walls, servo walls, damping; calibration for 'antiform "
+      "calibrate'. Only their sections are read.");
   for (const std::string &section : sections)
   {
     if (section == "Layer")
@@ -420,6 +422,8 @@ void declare_parameters(Parameters &p,
       declare(p.servo_walls, entries);
     else if (section == "Damping")
       declare(p.damping, entries);
+    else if (section == "Calibration")
+      declare(p.calibration, entries);
     else if (section == "Run")
       declare(p.run, entries);
     else

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 namespace antiform::cases
@@ -81,6 +82,7 @@ public:
       if (const auto line = last_.find(entry.path); line != last_.end())
         read_value(entry, line->second, declarations);
 
+    find_data(p.calibration.data);
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())
@@ -247,6 +249,8 @@ private:
     std::string what = "is not one of its words";
     if (is_number)
       what = parse_number(line.value, number) ? "is out of range" : "is not a number";
+    if (dynamic_cast<const NumberList *>(entry.pattern.get()) != nullptr)
+      what = "is no such list";
     const auto words = planned.find(entry.path);
     if (words != planned.end() && std::find(words->second.begin(), words->second.end(),
                                             line.value) != words->second.end())
@@ -256,6 +260,20 @@ private:
                         what + ". Give " + range_in_words(entry) +
                         (unit.empty() ? "" : " ") + unit + "; the default is " +
                         entry.default_value + ".");
+  }
+
+  /// A table is looked for from the deck that names it, like an include. Its path becomes
+  /// absolute, so that deck.prm can stand anywhere.
+  void find_data(std::string &path) const
+  {
+    const auto line = last_.find("Calibration/Laboratory data");
+    if (path.empty() || line == last_.end())
+      return;
+    const std::string &place = line->second.place;
+    std::filesystem::path folder;
+    if (place != "--set")
+      folder = std::filesystem::path(place.substr(0, place.rfind(':'))).parent_path();
+    path = std::filesystem::absolute(folder / path).lexically_normal().string();
   }
 
   void report(const Finding &finding)

@@ -143,6 +143,37 @@ struct OutputParameters
   double checkpoint_minutes = 5.;    ///< wall time between checkpoints
 };
 
+/// From laboratory targets to the layer's flat joint. A target of 0 is not given: it
+/// comes from the table of laboratory data, or does not exist.
+struct CalibrationParameters
+{
+  // What the rock has
+  double young_modulus = 0.;            ///< [Pa]
+  std::string modulus_from = "elastic"; ///< elastic | uniaxial
+  double tensile_strength = 0.;         ///< [Pa]
+  double compressive_strength = 0.;     ///< UCS [Pa]
+  std::vector<double> confinements;     ///< sigma_3 of the confined tests [Pa]
+  std::vector<double> strengths;        ///< sigma_1 there [Pa]
+  std::string data;                     ///< table of sigma_3 and sigma_1; empty: none
+  std::string site;                     ///< rows of it to use; empty: all
+  // How near is near enough, relative
+  double modulus_tolerance = 0.02, tension_tolerance = 0.05;
+  double uniaxial_tolerance = 0.05, confined_tolerance = 0.1;
+  // What is searched for
+  std::vector<std::string> free = {"effective modulus", "tensile strength", "cohesion",
+                                   "friction angle"};
+  std::string start = "targets"; ///< targets | rock
+  double range_factor = 8.;      ///< of modulus and strengths about their start
+  std::vector<double> angle_bounds = {0., 60.};     ///< phi_b [degrees]
+  std::vector<double> friction_bounds = {0.05, 1.}; ///< mu [-]
+  std::vector<double> slit_bounds = {0., 0.4};      ///< [-]
+  // What it may cost
+  int search_seeds = 3, check_seeds = 3, check_rounds = 3;
+  int evaluations = 6;                ///< of the search at most, differences apart
+  int jobs = 0;                       ///< trials at once; 0: as many as cores
+  double transits_of_tension = 2000.; ///< per millistrain
+};
+
 struct Parameters
 {
   std::string title;
@@ -158,6 +189,7 @@ struct Parameters
   DampingParameters damping;
   RunParameters run;
   OutputParameters output;
+  CalibrationParameters calibration;
 
   bool has(const std::string &component) const;
   /// The layer has joints that begin without bonds.

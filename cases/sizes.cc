@@ -74,8 +74,11 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
   {
     // An axial transit takes about two steps a grain diameter.
     const double transit = 2. * g.length() / d;
-    // Rocks break near 2.5e-3 in compression, at a tenth of that in tension.
-    const double usual = p.walls.action == "pull" ? 2.5e-4 : 2.5e-3;
+    // Rocks break near 2.5e-3 in compression, at a tenth of that in tension, and under
+    // confinement go on well beyond.
+    const double usual = p.walls.action == "pull" ? 2.5e-4
+                         : p.has("servo walls") ? std::min(5e-3, p.run.longest_shortening)
+                                                : 2.5e-3;
     const double millistrain =
         1e3 * (p.run.end_shortening > 0. ? p.run.end_shortening : usual);
     sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
