@@ -81,8 +81,10 @@ std::string trial_name(const Trial &trial, const Parameters &deck);
 std::string last_line_of(const std::string &file);
 
 /// Read what a trial left in @p directory; false when it is not finished.
+/// \param longest_shortening where its run was to be given up [-]
 /// Throws std::runtime_error with the reason when it has finished without a result.
 bool read_measurement(const Trial &trial,
+                      double longest_shortening,
                       const std::string &directory,
                       Measurement &measurement,
                       double &cpu_seconds);

@@ -132,7 +132,8 @@ bool TrialPool::read(const Trial &trial,
   double cpu_seconds = 0.;
   try
   {
-    if (!read_measurement(trial, folder(name), measurement, cpu_seconds))
+    if (!read_measurement(trial, calibration_.run.longest_shortening, folder(name),
+                          measurement, cpu_seconds))
       return false;
   }
   catch (const std::runtime_error &error)
