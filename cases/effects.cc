@@ -34,6 +34,10 @@ std::vector<Effect> list_effects(const Parameters &p)
   const bool breakable =
       grains && (p.layer.joint.breakable || (matrix && p.matrix.breakable));
   const bool slips = grains && matrix && p.matrix.interface == "frictionless";
+  const bool beside = grains && discrete::has_contact_beside(p.layer.law());
+  const bool flat =
+      (grains && p.layer.bond_model == "flat joint" && p.layer.joint.breakable) ||
+      (grains && matrix && p.matrix.breakable);
 
   const std::string unbonded = "joints of the layer begin without bonds";
   const auto at_breakage = [&](const std::string &name, const std::string &what)
@@ -44,8 +48,23 @@ std::vector<Effect> list_effects(const Parameters &p)
 
   std::vector<Effect> list;
   list.push_back(choose("bonds", grains, "the layer is grains", "nothing is grains"));
-  list.push_back(at_breakage("friction", "broken elements close and slide"));
-  if (slips)
+  list.push_back(
+      flat || !breakable
+          ? at_breakage("friction", "broken elements close and slide")
+          : Effect{"friction", State::absent,
+                   "nothing is left of a broken bond but the grains' contact"});
+  if (beside)
+  {
+    const std::string why = "the grains' contacts act beside the parallel bonds";
+    list.push_back({"contacts", State::present, why});
+    list.push_back({"search", State::present, why});
+  }
+  else if (p.has("fractures"))
+  {
+    list.push_back({"contacts", State::present, "blocks between fractures may meet"});
+    list.push_back({"search", State::present, "grains slide along fractures"});
+  }
+  else if (slips)
   {
     list.push_back({"contacts", State::present, "layer and matrix may slide and part"});
     list.push_back({"search", State::present, "grains slide along the interface"});
@@ -55,6 +74,8 @@ std::vector<Effect> list_effects(const Parameters &p)
     list.push_back(at_breakage("contacts", "loose grains meet"));
     list.push_back(at_breakage("search", "loose grains move"));
   }
+  list.push_back(choose("smooth joints", grains && p.has("fractures"),
+                        "fractures are listed in Components", "not listed in Components"));
   list.push_back(choose("mesh", mesh, "the matrix is continuum",
                         "no part of the section is continuum"));
   list.push_back(choose("bridging domain", p.is_bridged() && p.bridging.constraint,

@@ -1,5 +1,6 @@
 #include "cases/field_output.h"
 
+#include "cases/fracture_record.h"
 #include "coupling/output/mesh_vtu.h"
 #include "coupling/output/vtu.h"
 
@@ -101,7 +102,7 @@ void write_joints(const std::string &path, const coupling::GrainState &state)
       const Vec2 force = (-1. / w) * Vec2{joints.force[j].x, joints.force[j].y};
       normal.values.push_back(dot(force, n)); // tension positive
       shear.values.push_back(dot(force, perpendicular(n)));
-      const int n_elements = joints.groups[g].law.n_elements;
+      const int n_elements = discrete::constants(joints.groups[g].law).n_elements;
       int left = n_elements;
       for (int e = 0; joints.damage[j] >= 0 && e < n_elements; ++e)
         left -= joints.damaged.bond(joints.damage[j], e) != discrete::Bond::bonded;
@@ -112,7 +113,7 @@ void write_joints(const std::string &path, const coupling::GrainState &state)
                             {normal, shear, bonds, group});
 }
 
-/// Cracks where they are now: carried by the first grain of their joint.
+/// Cracks where they are now: carried by one of the two grains.
 void write_cracks(const std::string &path,
                   const coupling::GrainState &state,
                   const double shortening)
@@ -124,7 +125,7 @@ void write_cracks(const std::string &path,
   const discrete::Grains &grains = state.grains;
   for (const discrete::Crack &crack : state.cracks)
   {
-    const std::size_t one = state.joints.first[crack.joint];
+    const std::size_t one = crack.grain;
     const Vec2 arm =
         rotated(crack.reference_place - grains.reference(one), grains.rotation[one]);
     const Vec2 place = grains.position(one) + arm;
@@ -151,6 +152,8 @@ void write_field_files(const Scene &scene,
     groups.push_back("continuum");
   if (scene.grains)
     groups.insert(groups.end(), {"grains", "joints", "cracks"});
+  if (scene.grains && scene.grains->smooth)
+    groups.push_back("fractures");
   for (const std::string &group : groups)
   {
     const std::string path = directory + "/" + numbered(group, number);
@@ -160,6 +163,8 @@ void write_field_files(const Scene &scene,
       write_grains(path, scene);
     else if (group == "joints")
       write_joints(path, scene.grains->state);
+    else if (group == "fractures")
+      write_fractures(path, scene);
     else
       write_cracks(path, scene.grains->state, shortenings.back());
   }

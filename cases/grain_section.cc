@@ -1,5 +1,7 @@
 #include "cases/grain_section.h"
 
+#include "cases/fracture_list.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -157,29 +159,45 @@ void number_grains(std::vector<Placed> placed, const Parameters &p, GrainSection
   }
 }
 
-void bond(GrainSection &section, const Parameters &p, const AllPairs &pairs)
+/// Joints between the pairs; those across a fracture are left to smooth joints.
+void bond(GrainSection &section,
+          const Parameters &p,
+          const AllPairs &pairs,
+          std::vector<Fracture> fractures)
 {
   const Grains &grains = section.state.grains;
   Joints &joints = section.state.joints;
-  const auto add = [&](const Pairs &list)
+  std::vector<CrossedPair> crossed;
+  const auto add = [&](const Pairs &list, const JointLaw &law, const int region,
+                       const std::string &name, const std::vector<double> &modulus)
   {
+    joints.begin_group(law, region, name);
     for (const auto &[i, j] : list)
-      joints.add(grains, i, j, section.modulus[grains.region[i]],
-                 section.modulus[grains.region[j]]);
+    {
+      const double one = modulus[grains.region[i]], two = modulus[grains.region[j]];
+      if (!fractures.empty() &&
+          crossed_by(fractures, grains.reference(i), grains.reference(j)) >= 0)
+        crossed.push_back(
+            {i, j, joint_stiffness(grains.radius[i], grains.radius[j], one, two),
+             constants(law).stiffness_ratio});
+      else
+        joints.add(grains, i, j, one, two);
+    }
   };
-  joints.begin_group(p.layer.joint, layer_region, "layer");
-  add(pairs.layer);
+  add(pairs.layer, p.layer.law(), layer_region, "layer", {joint_modulus(p.layer.law())});
   if (section.matrix)
   {
+    const FlatJoint &law = section.matrix->law;
     if (p.matrix.interface == "cemented")
-    {
-      joints.begin_group(section.matrix->law, matrix_region, "interface");
-      add(pairs.interface);
-    }
-    joints.begin_group(section.matrix->law, matrix_region, "matrix");
-    add(pairs.matrix);
+      add(pairs.interface, law, matrix_region, "interface", section.modulus);
+    add(pairs.matrix, law, matrix_region, "matrix", section.modulus);
   }
   joints.finish(grains.size());
+  if (!p.has("fractures"))
+    return;
+  section.smooth = make_smooth_joints(grains, std::move(fractures), crossed);
+  section.smooth->effective_modulus = section.modulus[layer_region];
+  section.smooth->stiffness_ratio = constants(p.layer.law()).stiffness_ratio;
 }
 } // namespace
 
@@ -211,7 +229,10 @@ GrainSection make_grains(const Parameters &p,
                          const Progress &progress)
 {
   GrainSection section;
-  section.modulus.push_back(p.layer.joint.effective_modulus);
+  section.modulus.push_back(joint_modulus(p.layer.law()) +
+                            (has_contact_beside(p.layer.law())
+                                 ? p.layer.grain_contact().effective_modulus
+                                 : 0.));
   section.mean_radius = 0.5 * p.grain_diameter();
   std::vector<Placed> placed;
   progress("packing the layer");
@@ -253,11 +274,25 @@ GrainSection make_grains(const Parameters &p,
     pairs = find_pairs(all, layer_gap, matrix_gap);
   }
   progress("bonding");
-  bond(section, p, pairs);
+  bond(section, p, pairs,
+       p.has("fractures") ? make_fractures(p, geometry) : std::vector<Fracture>{});
   if (p.has_unbonded_joints())
     unbond_some(section.state.joints, 0, p.layer.types, section.mean_radius,
                 static_cast<std::uint64_t>(p.layer.seed));
   return section;
+}
+
+void find_contacts(GrainSection &section, Contacts &contacts)
+{
+  const Grains &grains = section.state.grains;
+  if (!section.smooth)
+  {
+    search_contacts(grains, section.state.joints, contacts);
+    return;
+  }
+  SmoothJointSearch fractures(grains, *section.smooth, contacts.margin);
+  search_contacts(grains, section.state.joints, contacts, &fractures);
+  fractures.finish();
 }
 
 namespace
@@ -290,50 +325,6 @@ std::vector<Wall> make_side_walls(const GrainSection &section,
 {
   const double half = 0.5 * geometry.thickness();
   return wall_pair(section, {0., -half}, {0., half});
-}
-
-Contacts
-make_contacts(const Parameters &p, const GrainSection &section, const bool interface_only)
-{
-  Contacts contacts;
-  contacts.margin = 0.25 * p.grain_diameter();
-  const auto law = [&](const double modulus, const double ratio, const double friction)
-  {
-    LinearContact contact;
-    contact.effective_modulus = modulus;
-    contact.stiffness_ratio = ratio;
-    contact.friction = friction;
-    return contact;
-  };
-  const FlatJoint &layer = p.layer.joint;
-  if (!interface_only)
-    contacts.groups.push_back(
-        {layer_region, layer_region,
-         law(layer.effective_modulus, layer.stiffness_ratio, layer.residual_friction)});
-  if (section.matrix)
-  {
-    const double two_in_series =
-        2. / (1. / section.modulus[layer_region] + 1. / section.modulus[matrix_region]);
-    const bool frictionless = p.matrix.interface == "frictionless";
-    contacts.groups.push_back({layer_region, matrix_region,
-                               law(two_in_series, section.matrix->law.stiffness_ratio,
-                                   frictionless ? 0. : p.matrix.residual_friction)});
-    if (frictionless)
-      for (const auto &[i, j] :
-           pairs_within(section.state.grains, section.matrix->installation_gap,
-                        layer_region, matrix_region))
-      {
-        const Grains &g = section.state.grains;
-        contacts.installed.push_back(
-            {i, j, norm(g.reference(j) - g.reference(i)) - g.radius[i] - g.radius[j]});
-      }
-    if (p.matrix.breakable && !interface_only)
-      contacts.groups.push_back(
-          {matrix_region, matrix_region,
-           law(section.modulus[matrix_region], section.matrix->law.stiffness_ratio,
-               p.matrix.residual_friction)});
-  }
-  return contacts;
 }
 
 std::vector<std::pair<std::int32_t, double>> base_grains(const GrainSection &section,

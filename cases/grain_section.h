@@ -3,7 +3,6 @@
 #include "cases/geometry.h"
 #include "cases/parameters.h"
 #include "coupling/grain_components.h"
-#include "discrete/contacts.h"
 #include "discrete/homogenise.h"
 #include "discrete/packing.h"
 #include "discrete/walls.h"
@@ -39,8 +38,9 @@ struct GrainSection
   coupling::GrainState state;
   discrete::PackingQuality layer_quality;
   std::optional<MatrixRock> matrix;
+  std::optional<discrete::SmoothJoints> smooth; ///< of pre-existing fractures
   std::vector<int> tile_grain;    ///< grain of the tile that a matrix grain copies; -1
-  std::vector<double> modulus;    ///< E* by region [Pa]
+  std::vector<double> modulus;    ///< E* by region, contact and bond together [Pa]
   double installation_gap = 0.;   ///< [m]
   double mean_radius = 0.;        ///< asked for [m]
   std::size_t removed_grains = 0; ///< matrix grains without a path to the rest
@@ -60,6 +60,10 @@ GrainSection make_grains(const Parameters &parameters,
                          const std::function<bool(const Vec2 &)> &holds,
                          const Progress &progress);
 
+/// Candidates of the section's contacts, fractures having the first say. Throws
+/// std::invalid_argument for grains whose centres coincide.
+void find_contacts(GrainSection &section, discrete::Contacts &contacts);
+
 /// End walls at both sides, stress-free where grains stand.
 std::vector<discrete::Wall> make_walls(const GrainSection &section,
                                        const SectionGeometry &geometry);
@@ -67,11 +71,6 @@ std::vector<discrete::Wall> make_walls(const GrainSection &section,
 /// Walls along the sides of a specimen, likewise.
 std::vector<discrete::Wall> make_side_walls(const GrainSection &section,
                                             const SectionGeometry &geometry);
-
-/// Laws and margin of linear contacts: @p interface_only before anything has broken.
-discrete::Contacts make_contacts(const Parameters &parameters,
-                                 const GrainSection &section,
-                                 bool interface_only);
 
 /// Grains within one diameter of the base, with their share of its width [m].
 std::vector<std::pair<std::int32_t, double>> base_grains(const GrainSection &section,

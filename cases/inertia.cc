@@ -30,6 +30,13 @@ void add_contact_stiffness(const Scene &scene, StiffnessSums &sums)
     }
   }
 }
+
+std::vector<discrete::PairStiffness> fracture_springs(const Scene &scene)
+{
+  if (!scene.grains->smooth)
+    return {};
+  return discrete::pair_stiffness(scene.grains->state.grains, *scene.grains->smooth);
+}
 } // namespace
 
 StiffnessSums grain_stiffness(const Scene &scene)
@@ -41,6 +48,13 @@ StiffnessSums grain_stiffness(const Scene &scene)
       for (const discrete::WallContact &contact : wall.contacts)
         sums.translation[contact.grain] += contact.stiffness;
   add_contact_stiffness(scene, sums);
+  for (const discrete::PairStiffness &pair : fracture_springs(scene))
+    for (const auto &[i, lever] :
+         {std::pair{pair.first, pair.lever1}, std::pair{pair.second, pair.lever2}})
+    {
+      sums.translation[i] += pair.translation();
+      sums.rotation[i] += pair.rotation(lever);
+    }
   return sums;
 }
 
@@ -55,7 +69,8 @@ double grain_step(const Scene &scene)
     for (const discrete::Wall &wall : *walls)
       for (const discrete::WallContact &contact : wall.contacts)
         ground[contact.grain] += contact.stiffness * contact.weight;
-  return discrete::stable_step(state.grains, state.joints, scene.contacts, ground);
+  return discrete::stable_step(state.grains, state.joints, scene.contacts, ground,
+                               fracture_springs(scene));
 }
 } // namespace
 

@@ -1,6 +1,7 @@
 // What a scene is made of and what cannot go together in it.
 #include "cases/deck_reader.h"
 #include "cases/declarations.h"
+#include "cases/fracture_list.h"
 #include "cases/sizes.h"
 
 #include <algorithm>
@@ -125,18 +126,38 @@ void check_strengths(const std::string &section,
              "more cohesion."});
 }
 
-void check_layer(const Parameters &p, Findings &findings)
+void check_bonds(const Parameters &p, Findings &findings)
 {
-  const auto &joint = p.layer.joint;
-  if (p.layer.representation == "grains" && joint.breakable &&
-      joint.tensile_strength == 0. && joint.cohesion == 0.)
-    findings.push_back({{"Layer/Breakable", "Layer/Flat joint/Tensile strength",
-                         "Layer/Flat joint/Cohesion"},
+  const discrete::BondConstants bond = discrete::constants(p.layer.law());
+  const bool flat = p.layer.bond_model == "flat joint";
+  const std::string section = flat                                    ? "Layer/Flat joint"
+                              : p.layer.bond_model == "parallel bond" ? "Layer/Parallel bond"
+                                                                      : "Layer/Contact bond";
+  const std::string cohesion =
+      section + (section == "Layer/Contact bond" ? "/Shear strength" : "/Cohesion");
+  if (bond.breakable && bond.tensile_strength == 0. && bond.cohesion == 0.)
+    findings.push_back({{"Layer/Breakable", section + "/Tensile strength", cohesion},
                         "but both strengths are 0 Pa: every joint would break in the "
                         "first step. Give strengths."});
-  if (p.layer.representation == "grains" && joint.breakable)
-    check_strengths("Layer/Flat joint", joint.tensile_strength, joint.cohesion,
-                    joint.tan_friction, findings);
+  if (bond.breakable && section != "Layer/Contact bond")
+    check_strengths(section, bond.tensile_strength, bond.cohesion, bond.tan_friction,
+                    findings);
+  if (!flat && (p.has("gravity") || p.has("surface pressure")))
+    findings.push_back({{"Layer/Bond model", "Components"},
+                        "a prestressed layer must be of flat joints in this version. "
+                        "Give flat joint, or "
+                        "remove gravity and surface pressure from 'Components'."});
+  if (!flat && p.layer.types.slit_fraction + p.layer.types.gapped_fraction > 0.)
+    findings.push_back({{"Layer/Joint types/Slit fraction",
+                         "Layer/Joint types/Gapped fraction", "Layer/Bond model"},
+                        "only flat joints can begin without bonds. Give 0, or "
+                        "'Layer/Bond model' = 'flat joint'."});
+}
+
+void check_layer(const Parameters &p, Findings &findings)
+{
+  if (p.layer.representation == "grains")
+    check_bonds(p, findings);
   if (p.layer.representation == "grains" && p.layer_length() < p.layer.thickness)
     findings.push_back(
         {{p.layer.length_ratio > 0. ? "Layer/Length ratio" : "Layer/Slenderness ratio",
@@ -328,8 +349,12 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.is_bridged())
     check_bridging(p, findings);
   check_run(p, findings);
+  if (p.has("layer") && p.has("fractures"))
+    check_fractures(p, findings);
   if (p.has("calibration"))
     check_calibration(p, findings);
+  if (p.has("layer") && p.has("fractures") && findings.empty())
+    check_drawn_fractures(p, findings);
   if (p.has("layer") && findings.empty()) // else the geometry may not exist
     check_memory(p, findings);
   return findings;
@@ -341,6 +366,44 @@ LayerParameters::LayerParameters()
   joint.tan_friction = tangent_of_degrees(8.);
 }
 
+discrete::JointLaw LayerParameters::law() const
+{
+  if (bond_model == "parallel bond")
+  {
+    discrete::ParallelBond bond = parallel_bond;
+    bond.breakable = joint.breakable;
+    return bond;
+  }
+  if (bond_model == "contact bond")
+  {
+    discrete::ContactBond bond = contact_bond;
+    bond.breakable = joint.breakable;
+    return bond;
+  }
+  return joint;
+}
+
+discrete::LinearContact LayerParameters::grain_contact() const
+{
+  discrete::LinearContact contact;
+  contact.effective_modulus = joint.effective_modulus;
+  contact.stiffness_ratio = joint.stiffness_ratio;
+  contact.friction = joint.residual_friction;
+  if (bond_model == "parallel bond")
+  {
+    contact.effective_modulus = parallel_bond.contact_modulus;
+    contact.stiffness_ratio = parallel_bond.contact_stiffness_ratio;
+    contact.friction = parallel_bond.residual_friction;
+  }
+  else if (bond_model == "contact bond")
+  {
+    contact.effective_modulus = contact_bond.effective_modulus;
+    contact.stiffness_ratio = contact_bond.stiffness_ratio;
+    contact.friction = contact_bond.residual_friction;
+  }
+  return contact;
+}
+
 bool Parameters::has(const std::string &component) const
 {
   return std::find(components.begin(), components.end(), component) != components.end();
@@ -349,7 +412,15 @@ bool Parameters::has(const std::string &component) const
 bool Parameters::has_unbonded_joints() const
 {
   return has("layer") && layer.representation == "grains" &&
+         layer.bond_model == "flat joint" &&
          layer.types.slit_fraction + layer.types.gapped_fraction > 0.;
+}
+
+bool Parameters::has_contacts_from_start() const
+{
+  return has("layer") && layer.representation == "grains" &&
+         (discrete::has_contact_beside(layer.law()) || has("fractures") ||
+          (has("matrix") && matrix.interface == "frictionless"));
 }
 
 bool Parameters::is_specimen() const

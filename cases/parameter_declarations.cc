@@ -54,6 +54,61 @@ void declare(discrete::FlatJoint &joint, Declarations &entries)
   entries.leave();
 }
 
+void declare(discrete::ParallelBond &bond, Declarations &entries)
+{
+  entries.enter("Parallel bond");
+  entries.number("Bond modulus", bond.bond_modulus,
+                 "E_c, of the cement; its stiffness follows from it and the two radii "
+                 "[Pa].",
+                 Number::above(0.));
+  entries.number("Stiffness ratio", bond.stiffness_ratio,
+                 "kappa, normal over shear stiffness of the cement [-].",
+                 Number::above(0.));
+  entries.number("Tensile strength", bond.tensile_strength,
+                 "sigma_c, normal stress at the cement's edge at which it breaks [Pa].",
+                 Number::at_least(0.));
+  entries.number("Cohesion", bond.cohesion,
+                 "c, shear stress at which the cement breaks without normal stress [Pa].",
+                 Number::at_least(0.));
+  entries.angle("Friction angle", bond.tan_friction,
+                "phi, by which pressure adds to the shear strength; 0 in the model of "
+                "2004 [degrees].");
+  entries.number("Radius multiplier", bond.radius_multiplier,
+                 "lambda, half width of the cement over the smaller radius [-].",
+                 Number::above(0.).up_to(1.));
+  entries.number("Moment contribution", bond.moment_contribution,
+                 "beta, share of the bending stress that the strengths see; 1 in the "
+                 "model of 2004 [-].",
+                 Number::at_least(0.).up_to(1.));
+  entries.number("Contact modulus", bond.contact_modulus,
+                 "E*, of the linear contact of the grains beside the cement [Pa].",
+                 Number::above(0.));
+  entries.number("Contact stiffness ratio", bond.contact_stiffness_ratio,
+                 "Normal over shear stiffness of the contact [-].", Number::above(0.));
+  entries.number("Residual friction", bond.residual_friction,
+                 "mu, friction coefficient of the contact [-].", Number::at_least(0.));
+  entries.leave();
+}
+
+void declare(discrete::ContactBond &bond, Declarations &entries)
+{
+  entries.enter("Contact bond");
+  entries.number("Effective modulus", bond.effective_modulus,
+                 "E*, of the glued contact [Pa].", Number::above(0.));
+  entries.number("Stiffness ratio", bond.stiffness_ratio,
+                 "kappa, normal over shear stiffness [-].", Number::above(0.));
+  entries.number("Tensile strength", bond.tensile_strength,
+                 "Tension at which the glue breaks, over the width 2 min(R) [Pa].",
+                 Number::at_least(0.));
+  entries.number("Shear strength", bond.shear_strength,
+                 "Shear force at which it breaks, over the same width [Pa].",
+                 Number::at_least(0.));
+  entries.number("Residual friction", bond.residual_friction,
+                 "mu, friction coefficient of the contact that stays [-].",
+                 Number::at_least(0.));
+  entries.leave();
+}
+
 void declare(discrete::JointTypes &types, Declarations &entries)
 {
   entries.enter("Joint types");
@@ -138,8 +193,15 @@ void declare(LayerParameters &layer, Declarations &entries)
                 Number::at_least(0.));
   entries.flag("Breakable", layer.joint.breakable,
                "May joints break? If not, would-be breaks are counted.");
+  entries.choice("Bond model", layer.bond_model,
+                 "Law that joins the grains: flat joints, as the source; the older "
+                 "parallel bonds and contact bonds, which leave round grains behind when "
+                 "they break.",
+                 "flat joint|parallel bond|contact bond");
   declare(layer.joint, entries);
   declare(layer.types, entries);
+  declare(layer.parallel_bond, entries);
+  declare(layer.contact_bond, entries);
   entries.leave();
 }
 
@@ -280,6 +342,77 @@ void declare(ServoWallsParameters &servo, Declarations &entries)
   entries.leave();
 }
 
+void declare_network(FracturesParameters &fractures, Declarations &entries)
+{
+  const auto numbers = [&](const std::string &name, std::vector<double> &value,
+                           const std::string &what, const Number &range)
+  { entries.numbers(name, value, what, range); };
+  numbers("Intensity", fractures.intensity,
+          "P21 of each set of a drawn network, length of traces per area, a list; empty: "
+          "none is drawn [1/m].",
+          Number::above(0.));
+  numbers("Orientation", fractures.orientation,
+          "Mean direction of the traces, from x, one number or one for each set "
+          "[degrees].",
+          Number::between(-180., 180.));
+  numbers("Orientation deviation", fractures.orientation_deviation,
+          "Standard deviation of it [degrees].", Number::between(0., 90.));
+  entries.choice("Length law", fractures.length_law,
+                 "Distribution of the lengths, of all sets.",
+                 "constant|exponential|lognormal|power law");
+  numbers("Mean length", fractures.mean_length, "But for a power law [m].",
+          Number::above(0.));
+  numbers("Length deviation", fractures.length_deviation,
+          "Standard deviation of a lognormal length [m].", Number::at_least(0.));
+  numbers("Length exponent", fractures.length_exponent,
+          "a of a power law: the density of lengths falls as length^-a [-].",
+          Number::above(0.));
+  numbers("Shortest", fractures.shortest, "Least length; a power law needs it [m].",
+          Number::at_least(0.));
+  numbers("Longest", fractures.longest,
+          "Largest length, 0 for no bound; a power law needs it [m].",
+          Number::at_least(0.));
+  entries.choice("Region", fractures.region,
+                 "Where the network lies: in the layer, or in the whole section.",
+                 "layer|section");
+  entries.whole("Seed", fractures.seed,
+                "Of the network; the same seed draws the same fractures [-].",
+                Number::at_least(0.));
+}
+
+void declare(FracturesParameters &fractures, Declarations &entries)
+{
+  entries.enter("Fractures");
+  entries.text("List", fractures.list,
+               "Tips of fractures, x1 y1 x2 y2 of each, separated by semicolons [m].");
+  entries.text("Table", fractures.table,
+               "Table (.csv, beside the deck) with columns x1_m, y1_m, x2_m, y2_m and, "
+               "where wanted, friction_angle_deg, dilation_angle_deg, cohesion_Pa, "
+               "tensile_strength_Pa, dip_deg; empty: none.");
+  declare_network(fractures, entries);
+  entries.number("Normal stiffness", fractures.law.normal_stiffness,
+                 "k_n of the smooth joints, 0 for that of the joints that they replace "
+                 "[Pa/m].",
+                 Number::at_least(0.));
+  entries.number("Shear stiffness", fractures.law.shear_stiffness, "k_s, likewise [Pa/m].",
+                 Number::at_least(0.));
+  entries.angle("Friction angle", fractures.law.friction,
+                "Of the unbonded fracture [degrees].");
+  entries.angle("Dilation angle", fractures.law.tan_dilation,
+                "psi, opening per slip is tan(psi); at most the friction angle "
+                "[degrees].");
+  entries.flag("Bonded", fractures.law.bonded,
+               "Are the fractures healed, with the three strengths below?");
+  entries.number("Tensile strength", fractures.law.tensile_strength,
+                 "Of a bonded fracture [Pa].", Number::at_least(0.));
+  entries.number("Cohesion", fractures.law.cohesion,
+                 "Shear strength of a bonded fracture without normal stress [Pa].",
+                 Number::at_least(0.));
+  entries.angle("Bonded friction angle", fractures.law.tan_friction,
+                "By which pressure adds to it [degrees].");
+  entries.leave();
+}
+
 void declare(DampingParameters &damping, Declarations &entries)
 {
   entries.enter("Damping");
@@ -356,7 +489,7 @@ const std::vector<std::string> &all_components()
 {
   static const std::vector<std::string> names = {
       "layer",   "matrix", "foundation",  "surface pressure",
-      "gravity", "walls",  "servo walls", "damping", "calibration"};
+      "gravity", "walls",  "servo walls", "fractures", "damping", "calibration"};
   return names;
 }
 
@@ -371,6 +504,7 @@ const std::vector<Section> &all_sections()
       {"Gravity", "component gravity"},
       {"Walls", "component walls"},
       {"Servo walls", "component servo walls"},
+      {"Fractures", "component fractures"},
       {"Damping", "component damping"},
       {"Calibration", "component calibration"},
       {"Run", "always"},
@@ -397,7 +531,7 @@ void declare_parameters(Parameters &p,
   entries.list(
       "Components", p.components,
       "What exists in the scene, a list: layer, matrix, foundation, surface "
-      "pressure, gravity, walls, servo walls, damping; calibration for 'antiform "
+      "pressure, gravity, walls, servo walls, fractures, damping; calibration for 'antiform "
       "calibrate'. Only their sections are read.");
   for (const std::string &section : sections)
   {
@@ -420,6 +554,8 @@ void declare_parameters(Parameters &p,
       declare(p.walls, entries);
     else if (section == "Servo walls")
       declare(p.servo_walls, entries);
+    else if (section == "Fractures")
+      declare(p.fractures, entries);
     else if (section == "Damping")
       declare(p.damping, entries);
     else if (section == "Calibration")

@@ -82,7 +82,8 @@ public:
       if (const auto line = last_.find(entry.path); line != last_.end())
         read_value(entry, line->second, declarations);
 
-    find_data(p.calibration.data);
+    find_data("Calibration/Laboratory data", p.calibration.data);
+    find_data("Fractures/Table", p.fractures.table);
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())
@@ -264,9 +265,9 @@ private:
 
   /// A table is looked for from the deck that names it, like an include. Its path becomes
   /// absolute, so that deck.prm can stand anywhere.
-  void find_data(std::string &path) const
+  void find_data(const std::string &entry, std::string &path) const
   {
-    const auto line = last_.find("Calibration/Laboratory data");
+    const auto line = last_.find(entry);
     if (path.empty() || line == last_.end())
       return;
     const std::string &place = line->second.place;

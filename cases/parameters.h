@@ -1,7 +1,9 @@
 #pragma once
 
-#include "discrete/flat_joint.h"
+#include "discrete/bond_laws.h"
+#include "discrete/fractures.h"
 #include "discrete/joint_types.h"
+#include "discrete/linear_contact.h"
 
 #include <map>
 #include <stdexcept>
@@ -48,8 +50,16 @@ struct LayerParameters
   double installation_gap = 0.3; ///< over the mean radius
   double grain_density = 2500.;  ///< [kg/m^3]
   int seed = 1;
-  discrete::FlatJoint joint; ///< breakable etc.
+  std::string bond_model = "flat joint"; ///< or parallel bond, contact bond
+  discrete::FlatJoint joint;             ///< breakable, of whichever model
   discrete::JointTypes types;
+  discrete::ParallelBond parallel_bond;
+  discrete::ContactBond contact_bond;
+
+  /// What joins the grains of the layer.
+  discrete::JointLaw law() const;
+  /// What acts between grains of the layer that nothing joins.
+  discrete::LinearContact grain_contact() const;
 };
 
 /// The weak rock around the layer.
@@ -115,6 +125,24 @@ struct ServoWallsParameters
   double pressure = 10e6; ///< [Pa]
   double gain = 0.5;      ///< beta: share of the error that one step takes away
   double ramp = 100.;     ///< transits over which the pressure comes up on all sides
+};
+
+/// Pre-existing fractures, by smooth joints.
+struct FracturesParameters
+{
+  std::string list;  ///< "x1 y1 x2 y2; ..." [m]
+  std::string table; ///< of fractures (.csv); empty: none
+  // A drawn network: a number for each set, or one for all
+  std::vector<double> intensity;                   ///< P21 [1/m]
+  std::vector<double> orientation = {60.};         ///< [degrees]
+  std::vector<double> orientation_deviation = {5.};
+  std::string length_law = "constant"; ///< exponential, lognormal, power law
+  std::vector<double> mean_length = {10.}, length_deviation = {2.}; ///< [m]
+  std::vector<double> length_exponent = {2.5};
+  std::vector<double> shortest = {0.}, longest = {0.}; ///< 0: no bound [m]
+  std::string region = "layer";                        ///< layer | section
+  int seed = 1;
+  discrete::SmoothJoint law;
 };
 
 struct DampingParameters
@@ -186,6 +214,7 @@ struct Parameters
   GravityParameters gravity;
   WallsParameters walls;
   ServoWallsParameters servo_walls;
+  FracturesParameters fractures;
   DampingParameters damping;
   RunParameters run;
   OutputParameters output;
@@ -194,6 +223,8 @@ struct Parameters
   bool has(const std::string &component) const;
   /// The layer has joints that begin without bonds.
   bool has_unbonded_joints() const;
+  /// Linear contacts act before anything has broken.
+  bool has_contacts_from_start() const;
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.

@@ -28,6 +28,7 @@ from run_files import Run, RunError  # noqa: E402
 LAYER_COLOUR, MATRIX_COLOUR = "#a9a9a9", "#e4e4e4"
 MESH_COLOUR, MESH_EDGE = "#f7f3e8", "#d5cbb0"
 TENSION_CRACK, SHEAR_CRACK = "#d7191c", "black"
+FRACTURE = "#08519c"
 COMPRESSION, TENSION = "#1f4fa8", "#1a9641"
 COMPETENT_REGION = 0
 BROKEN_IN_TENSION = 1  # code of the field "mode"; 2 is broken in shear
@@ -255,6 +256,13 @@ def fracture_map(run, frame, path):
                 width = 1.1 if axes.box.width > 0.5 * whole.width else 2.
                 axes.add_collection(LineCollection(ends[chosen], colors=colour,
                                                    linewidths=width, zorder=3))
+    if frame.fractures is not None and len(frame.fractures.types):
+        lines = frame.fractures.lines()
+        for axes in figure.axes:
+            axes.add_collection(LineCollection(lines, colors=FRACTURE, linewidths=1.4,
+                                               zorder=2.5))
+        handles.append(Line2D([], [], color=FRACTURE, linewidth=2.5,
+                              label="pre-existing fractures"))
     if frame.grains is not None:
         layer = is_layer(frame)
         for chosen, colour, name in ((layer, LAYER_COLOUR, "competent layer"),

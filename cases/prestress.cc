@@ -225,8 +225,8 @@ void take_from_unbreakable(Scene &scene, std::vector<coupling::GrainLoad> &held)
   bool all = true;
   for (const JointGroup &group : joints.groups)
   {
-    all = all && !group.law.breakable;
-    if (group.law.breakable)
+    all = all && !discrete::constants(group.law).breakable;
+    if (discrete::constants(group.law).breakable)
       continue;
     for (std::size_t j = group.begin; j < group.end; ++j)
     {

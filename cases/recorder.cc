@@ -1,6 +1,7 @@
 #include "cases/recorder.h"
 
 #include "cases/field_output.h"
+#include "cases/fracture_record.h"
 #include "continuum/errors.h"
 
 #include <algorithm>
@@ -420,6 +421,7 @@ void Recorder::fill(Summary &summary) const
     const auto n_would = std::count(would.begin(), would.end(), 1);
     results["unbreakable_joints_over_strength"] = {static_cast<double>(n_would), "-"};
   }
+  report_fractures(scene_, summary);
   summary.energy = {
       {"boundary_work", energies_.boundary_work},
       {"kinetic", energies_.kinetic},

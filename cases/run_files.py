@@ -167,6 +167,7 @@ class Frame:
         self.grains = grids.get("grains")
         self.joints = grids.get("joints")
         self.cracks = grids.get("cracks")
+        self.fractures = grids.get("fractures")
         self.continuum = grids.get("continuum")
 
 

@@ -3,6 +3,7 @@
 #include "cases/inertia.h"
 #include "cases/mesh_strips.h"
 #include "cases/scene_components.h"
+#include "cases/section_contacts.h"
 
 #include "continuum/errors.h"
 #include "continuum/foundation.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace antiform::cases
@@ -104,6 +106,24 @@ void support_mesh(Scene &scene)
   }
 }
 
+/// Smooth joints have no bridging weight.
+void refuse_fractures_in_overlap(const GrainSection &section, const OverlapWeight &weight)
+{
+  const discrete::Grains &grains = section.state.grains;
+  for (const discrete::SmoothContact &c : section.smooth->contacts)
+    for (const std::int32_t i : {c.first, c.second})
+      if (weight.grains(grains.reference(i)) < 1.)
+      {
+        const discrete::Fracture &f = section.smooth->fractures[c.fracture];
+        char text[320];
+        std::snprintf(text, sizeof text,
+                      "the fracture from (%.6g, %.6g) to (%.6g, %.6g) reaches into the "
+                      "overlap of grains and mesh, where there are no smooth joints. "
+                      "Shorten it, or give 'Bridging domain / Buffer width ratio' more.",
+                      f.begin.x, f.begin.y, f.end.x, f.end.y);
+        throw InputError({text});
+      }
+}
 } // namespace
 
 MPI_Comm Scene::communicator() const
@@ -142,15 +162,16 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
   {
     const auto holds = [&](const Vec2 &x) { return !bridged || weight.holds_grains(x); };
     scene->grains.emplace(make_grains(p, scene->geometry, holds, progress));
+    if (bridged && scene->grains->smooth)
+      refuse_fractures_in_overlap(*scene->grains, weight);
     if (p.has("walls") && p.walls.action == "press")
       scene->walls = make_walls(*scene->grains, scene->geometry);
     if (p.has("servo walls"))
       scene->side_walls = make_side_walls(*scene->grains, scene->geometry);
-    if (p.has("matrix") && p.matrix.interface == "frictionless")
+    if (p.has_contacts_from_start())
     {
-      const coupling::GrainState &state = scene->grains->state;
-      scene->contacts = make_contacts(p, *scene->grains, true);
-      discrete::search_contacts(state.grains, state.joints, scene->contacts);
+      scene->contacts = make_contacts(p, *scene->grains, ContactsFor::intact_scene);
+      find_contacts(*scene->grains, scene->contacts);
     }
   }
   else if (p.has("walls"))

@@ -11,6 +11,7 @@
 #include "coupling/mesh_components.h"
 #include "coupling/simulation.h"
 #include "coupling/specimen_components.h"
+#include "discrete/contacts.h"
 
 #include <mpi.h>
 

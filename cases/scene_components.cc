@@ -4,10 +4,12 @@
 #include "cases/inertia.h"
 #include "cases/prestress.h"
 #include "cases/scene.h"
+#include "cases/section_contacts.h"
 
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,6 +27,7 @@ enum Rank
   rank_broken = 10,
   rank_bonds = 20,
   rank_search = 25,
+  rank_smooth_joints = 28,
   rank_contacts = 30,
   rank_walls = 40,
   rank_loads = 60,
@@ -38,9 +41,14 @@ void add_contacts(Scene &scene)
 {
   GrainState &state = scene.grains->state;
   const auto rescale = [&scene] { return after_search(scene); };
-  scene.simulation->add(std::make_unique<ContactSearch>(state, scene.contacts, rescale),
-                        {Stage::forces}, rank_search, "search",
-                        reason_for(scene.parameters, "search"));
+  // Contact bonds leave contacts behind, taken over at the end of a step.
+  const bool leaves_contacts = scene.parameters.layer.bond_model == "contact bond";
+  const auto search = [&scene] { find_contacts(*scene.grains, scene.contacts); };
+  scene.simulation->add(
+      std::make_unique<ContactSearch>(state, scene.contacts, search, rescale),
+                        leaves_contacts ? std::vector<Stage>{Stage::forces, Stage::drift}
+                                        : std::vector<Stage>{Stage::forces},
+                        rank_search, "search", reason_for(scene.parameters, "search"));
   scene.simulation->add(std::make_unique<GrainContacts>(state, scene.contacts),
                         {Stage::forces}, rank_contacts, "contacts",
                         reason_for(scene.parameters, "contacts"));
@@ -59,7 +67,13 @@ void add_grain_components(Scene &scene)
   bonds.on_first_crack = [&scene]
   { scene.simulation->later([&scene] { scene.add_breakage_components(); }); };
 
-  if (p.has("matrix") && p.matrix.interface == "frictionless")
+  if (scene.grains->smooth)
+    simulation
+        .add(std::make_unique<SmoothJointForces>(state, *scene.grains->smooth),
+             {Stage::forces}, rank_smooth_joints, "smooth joints",
+             reason("smooth joints"))
+        .on_first_crack = bonds.on_first_crack;
+  if (p.has_contacts_from_start())
     add_contacts(scene);
   if (p.has("matrix") && p.matrix.representation == "grains")
   {
@@ -265,15 +279,23 @@ void Scene::add_breakage_components()
     return;
   breakage_components = true;
   GrainState &state = grains->state;
-  const bool listed =
-      parameters.has("matrix") && parameters.matrix.interface == "frictionless";
-  simulation->add(std::make_unique<BrokenJoints>(state), {Stage::forces}, rank_broken,
-                  "friction", reason_for(parameters, "friction"));
-  discrete::Contacts all = make_contacts(parameters, *grains, false);
+  const bool listed = parameters.has_contacts_from_start();
+  const bool flat_joints_break =
+      std::any_of(state.joints.groups.begin(), state.joints.groups.end(),
+                  [](const discrete::JointGroup &group)
+                  {
+                    return !discrete::is_brittle(group.law) &&
+                           (group.flat().breakable || group.layer == layer_region);
+                  });
+  if (flat_joints_break)
+    simulation->add(std::make_unique<BrokenJoints>(state), {Stage::forces}, rank_broken,
+                    "friction", reason_for(parameters, "friction"));
+  discrete::Contacts all = make_contacts(parameters, *grains, ContactsFor::broken_scene);
   all.contacts = contacts.contacts;
   all.lost_energy = contacts.lost_energy;
   all.installed = contacts.installed; // with the prestress that is in them
   contacts = std::move(all);
+  discrete::take_released(state.joints, contacts);
   if (!listed) // else search and contacts are there; the wider groups force a search
     add_contacts(*this);
 }

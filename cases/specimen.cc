@@ -32,7 +32,7 @@ double crack_density(const Scene &scene)
   const discrete::DamagedJoints &damaged = joints.damaged;
   for (std::size_t k = 0; k < damaged.size(); ++k)
   {
-    const int n = joints.groups[damaged.group[k]].law.n_elements;
+    const int n = discrete::constants(joints.groups[damaged.group[k]].law).n_elements;
     const double a = joints.half_length[damaged.joint[k]] / n;
     for (int e = 0; e < n; ++e)
       sum += damaged.bond(k, e) != discrete::Bond::bonded ? a * a : 0.;

@@ -69,7 +69,7 @@ void visit_damaged(StateArchive &archive, Joints &joints)
   std::vector<std::int64_t> joint, bond, removed;
   std::vector<double> values;
   const auto n_elements = [&](const std::size_t k)
-  { return joints.groups[damaged.group[k]].law.n_elements; };
+  { return constants(joints.groups[damaged.group[k]].law).n_elements; };
   if (!archive.is_loading())
     for (std::size_t k = 0; k < damaged.size(); ++k)
     {
@@ -119,7 +119,8 @@ void visit_cracks(StateArchive &archive, std::vector<Crack> &cracks)
            {static_cast<std::int64_t>(crack.step), static_cast<std::int64_t>(crack.mode),
             static_cast<std::int64_t>(crack.layer),
             static_cast<std::int64_t>(crack.joint),
-            static_cast<std::int64_t>(crack.element)})
+            static_cast<std::int64_t>(crack.element),
+            static_cast<std::int64_t>(crack.grain)})
         integers.push_back(v);
       for (const double v :
            {crack.time, crack.place.x, crack.place.y, crack.reference_place.x,
@@ -130,7 +131,7 @@ void visit_cracks(StateArchive &archive, std::vector<Crack> &cracks)
   archive.array("cracks/values", values);
   if (!archive.is_loading())
     return;
-  cracks.assign(integers.size() / 5, {});
+  cracks.assign(integers.size() / 6, {});
   auto i = integers.begin();
   auto v = values.begin();
   for (Crack &crack : cracks)
@@ -140,6 +141,7 @@ void visit_cracks(StateArchive &archive, std::vector<Crack> &cracks)
     crack.layer = static_cast<int>(*i++);
     crack.joint = static_cast<std::size_t>(*i++);
     crack.element = static_cast<int>(*i++);
+    crack.grain = static_cast<std::size_t>(*i++);
     for (double *x :
          {&crack.time, &crack.place.x, &crack.place.y, &crack.reference_place.x,
           &crack.reference_place.y, &crack.orientation, &crack.length})
@@ -221,12 +223,80 @@ void GrainContacts::visit_state(StateArchive &archive)
   }
 }
 
-void ContactSearch::run(const Stage, const Clock &)
+void SmoothJointForces::run(const Stage, const Clock &clock)
 {
+  std::vector<Crack> found;
+  const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
+  add_smooth_joint_forces(state_.grains, joints_, now,
+                          state_.breaking ? &found : nullptr);
+  if (found.empty())
+    return;
+  const bool first = state_.cracks.empty();
+  state_.cracks.insert(state_.cracks.end(), found.begin(), found.end());
+  if (first && on_first_crack)
+    on_first_crack();
+}
+
+void SmoothJointForces::add_energies(Energies &energies) const
+{
+  const JointEnergies joints = smooth_joint_energies(joints_);
+  energies.strain_grains += joints.strain;
+  energies.slip += joints.slip;
+  energies.fracture += joints.fracture;
+}
+
+void SmoothJointForces::visit_state(StateArchive &archive)
+{
+  std::vector<std::int64_t> integers;
+  std::vector<double> values;
+  if (!archive.is_loading())
+    for (const SmoothContact &c : joints_.contacts)
+    {
+      for (const std::int64_t v : {static_cast<std::int64_t>(c.first),
+                                   static_cast<std::int64_t>(c.second),
+                                   static_cast<std::int64_t>(c.fracture),
+                                   static_cast<std::int64_t>(c.bonded ? 1 : 0)})
+        integers.push_back(v);
+      for (const double v :
+           {c.normal_x, c.normal_y, c.distance, c.origin, c.area, c.normal_stiffness,
+            c.shear_stiffness, c.slip, c.dilation, c.gap, c.shear, c.normal_stress,
+            c.shear_stress, c.slip_energy, c.fracture_energy})
+        values.push_back(v);
+    }
+  archive.array("smooth_joints/integers", integers);
+  archive.array("smooth_joints/values", values);
+  archive.value("smooth_joints/lost_slip", joints_.lost_slip);
+  archive.value("smooth_joints/lost_fracture", joints_.lost_fracture);
+  if (!archive.is_loading())
+    return;
+  joints_.contacts.assign(integers.size() / 4, {});
+  auto i = integers.begin();
+  auto v = values.begin();
+  for (SmoothContact &c : joints_.contacts)
+  {
+    c.first = static_cast<std::int32_t>(*i++);
+    c.second = static_cast<std::int32_t>(*i++);
+    c.fracture = static_cast<std::int32_t>(*i++);
+    c.bonded = *i++ != 0;
+    for (double *x :
+         {&c.normal_x, &c.normal_y, &c.distance, &c.origin, &c.area, &c.normal_stiffness,
+          &c.shear_stiffness, &c.slip, &c.dilation, &c.gap, &c.shear, &c.normal_stress,
+          &c.shear_stress, &c.slip_energy, &c.fracture_energy})
+      *x = *v++;
+  }
+}
+
+void ContactSearch::run(const Stage stage, const Clock &)
+{
+  if (stage == Stage::drift)
+  {
+    take_released(state_.joints, contacts_);
+    return;
+  }
   acted_ = needs_search(state_.grains, contacts_);
   if (!acted_)
     return;
-  search_contacts(state_.grains, state_.joints, contacts_);
+  search_();
   lost_ += on_search_();
 }
 

@@ -2,6 +2,7 @@
 
 #include "coupling/simulation.h"
 #include "discrete/contacts.h"
+#include "discrete/smooth_joints.h"
 #include "discrete/grains.h"
 #include "discrete/integrate.h"
 #include "discrete/joints.h"
@@ -92,17 +93,40 @@ private:
   discrete::Contacts &contacts_;
 };
 
+/// Smooth joints of pre-existing fractures.
+class SmoothJointForces : public Component
+{
+public:
+  SmoothJointForces(GrainState &state, discrete::SmoothJoints &joints)
+      : state_(state)
+      , joints_(joints)
+  {
+  }
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  /// Called after the step in which the first bond breaks.
+  std::function<void()> on_first_crack;
+
+private:
+  GrainState &state_;
+  discrete::SmoothJoints &joints_;
+};
+
 /// Search for pairs that may touch, whenever a grain has used up half the margin.
 /// What follows a search may cost kinetic energy, which it returns: it is booked as
-/// damping.
+/// damping. At the drift it takes over what broken contact bonds have left.
 class ContactSearch : public Component
 {
 public:
   ContactSearch(GrainState &state,
                 discrete::Contacts &contacts,
+                std::function<void()> search,
                 std::function<double()> on_search)
       : state_(state)
       , contacts_(contacts)
+      , search_(std::move(search))
       , on_search_(std::move(on_search))
   {
   }
@@ -117,6 +141,7 @@ public:
 private:
   GrainState &state_;
   discrete::Contacts &contacts_;
+  std::function<void()> search_;
   std::function<double()> on_search_;
   double lost_ = 0.; ///< [J]
   bool acted_ = false;

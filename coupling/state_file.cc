@@ -24,7 +24,7 @@ namespace antiform::coupling
 namespace
 {
 const std::string magic = "antiform state file\n";
-const int format_version = 3;
+const int format_version = 4;
 const std::size_t block_size = 512;
 const char *const contents_name = "contents";
 const char *const ranks_name = "ranks"; // how many wrote the file

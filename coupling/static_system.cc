@@ -117,13 +117,12 @@ std::array<std::array<double, 6>, 3> joint_rows(const discrete::Joints &joints,
 
 std::array<double, 3> joint_stiffness(const discrete::Joints &joints, const std::size_t j)
 {
-  const discrete::FlatJoint &law = joints.group_of(j).law;
+  const discrete::BondConstants bond = discrete::constants(joints.group_of(j).law);
   const double full = 2. * joints.half_length[j];
   const double normal =
       joints.stiffness[j] * full * (joints.weight.empty() ? 1. : joints.weight[j]);
-  const double n = law.n_elements;
-  const double moment = (law.element_moment ? 1. : 1. - 1. / (n * n)) / 12.;
-  return {normal, normal / law.stiffness_ratio, normal * full * full * moment};
+  return {normal, normal / bond.stiffness_ratio,
+          normal * full * full * bond.moment_factor};
 }
 
 StaticSystem::StaticSystem(const discrete::Grains &grains,

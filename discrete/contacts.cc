@@ -14,10 +14,16 @@ bool before(const Contact &a, const Contact &b)
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// State of a joint between two grains, if there is one: 0 none, 1 holds, 2 removed.
+/// A joint between two grains, if there is one, and what it lets the contact do.
 struct JointOfPair
 {
-  int state = 0;
+  enum class State
+  {
+    none,
+    holds,   ///< no contact
+    released ///< removed, or with the contact beside it: the contact knows its gap
+  };
+  State state = State::none;
   double installed_gap = 0.;
 };
 JointOfPair joint_of_pair(const Grains &grains,
@@ -34,9 +40,19 @@ JointOfPair joint_of_pair(const Grains &grains,
       continue;
     const std::int32_t damage = joints.damage[joint];
     const bool removed = damage >= 0 && joints.damaged.removed[damage] != 0;
-    return {removed ? 2 : 1, joints.length[joint] - grains.radius[i] - grains.radius[j]};
+    const bool beside = has_contact_beside(joints.group_of(joint).law);
+    return {removed || beside ? JointOfPair::State::released : JointOfPair::State::holds,
+            joints.length[joint] - grains.radius[i] - grains.radius[j]};
   }
   return {};
+}
+
+/// The pair's bond has broken in this step, and its contact is about to be taken over.
+bool waits(const Joints &joints, const std::int32_t i, const std::int32_t j)
+{
+  return std::any_of(joints.released.begin(), joints.released.end(),
+                     [&](const Joints::Released &r)
+                     { return r.contact.first == i && r.contact.second == j; });
 }
 
 double reference_gap(const Contacts &contacts, const std::int32_t i, const std::int32_t j)
@@ -68,32 +84,42 @@ const LinearContact &Contacts::law(const Grains &grains, const Contact &contact)
   throw std::logic_error("no contact law for this pair of regions");
 }
 
-void search_contacts(const Grains &grains, const Joints &joints, Contacts &contacts)
+void search_contacts(const Grains &grains,
+                     const Joints &joints,
+                     Contacts &contacts,
+                     PairOwner *const owner)
 {
   // A reference gap above zero lets a pair touch before its disks do.
   double reach = contacts.margin;
   for (const Contacts::Installed &pair : contacts.installed)
     reach = std::max(reach, pair.reference_gap + contacts.margin);
+  const auto installed_gap = [&](const std::size_t j)
+  {
+    return joints.length[j] - grains.radius[joints.first[j]] -
+           grains.radius[joints.second[j]];
+  };
   for (std::size_t k = 0; k < joints.damaged.size(); ++k)
     if (joints.damaged.removed[k])
-    {
-      const std::size_t j = joints.damaged.joint[k];
-      reach = std::max(reach, joints.length[j] - grains.radius[joints.first[j]] -
-                                  grains.radius[joints.second[j]] + contacts.margin);
-    }
+      reach = std::max(reach, installed_gap(joints.damaged.joint[k]) + contacts.margin);
+  for (const JointGroup &group : joints.groups)
+    for (std::size_t j = group.begin; has_contact_beside(group.law) && j < group.end; ++j)
+      reach = std::max(reach, installed_gap(j) + contacts.margin);
 
   std::vector<Contact> found;
   for (const ContactGroup &group : contacts.groups)
     for (const auto &[i, j] : pairs_within(grains, reach, group.region_i, group.region_j))
     {
       const JointOfPair joint = joint_of_pair(grains, joints, i, j);
-      if (joint.state == 1)
+      if (joint.state == JointOfPair::State::holds || waits(joints, i, j))
+        continue;
+      if (owner != nullptr && owner->takes(i, j))
         continue;
       Contact contact;
       contact.first = i;
       contact.second = j;
-      contact.reference_gap =
-          joint.state == 2 ? joint.installed_gap : reference_gap(contacts, i, j);
+      contact.reference_gap = joint.state == JointOfPair::State::released
+                                  ? joint.installed_gap
+                                  : reference_gap(contacts, i, j);
       const double distance = norm(grains.position(j) - grains.position(i));
       // A contact pushes along the branch; of no length, it would push with a NaN.
       if (!(distance > 0.))
@@ -121,6 +147,18 @@ void search_contacts(const Grains &grains, const Joints &joints, Contacts &conta
   contacts.contacts = std::move(found);
   contacts.search_x = grains.displacement_x;
   contacts.search_y = grains.displacement_y;
+}
+
+void take_released(Joints &joints, Contacts &contacts)
+{
+  for (const auto &[contact, record] : joints.released)
+  {
+    contacts.contacts.insert(std::lower_bound(contacts.contacts.begin(),
+                                              contacts.contacts.end(), contact, before),
+                             contact);
+    joints.damaged.force[record] = {0., 0., 0., 0.};
+  }
+  joints.released.clear();
 }
 
 bool needs_search(const Grains &grains, const Contacts &contacts)

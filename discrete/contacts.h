@@ -2,37 +2,13 @@
 
 #include "discrete/grains.h"
 #include "discrete/joints.h"
+#include "discrete/linear_contact.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace antiform::discrete
 {
-/// Linear contact of two grains that no joint holds (Cundall & Strack 1979): stiffness by
-/// the deformability method, Coulomb friction, no tension. Compression is a positive
-/// number N here, as in the source; gaps are opening positive as everywhere.
-struct LinearContact
-{
-  double effective_modulus = 50e9; ///< E* [Pa]
-  double stiffness_ratio = 2.2;    ///< k_n / k_s [-]
-  double friction = 0.4;           ///< mu [-]; 0: no shear force at all
-  double normal_dashpot = 0.;      ///< beta_n, share of critical damping [-]
-  double shear_dashpot = 0.;       ///< beta_s [-]
-  bool tension_in_dashpot = true;  ///< false: the dashpot never makes the contact pull
-};
-
-/// One candidate pair. State survives as long as the pair stays a candidate.
-struct Contact
-{
-  std::int32_t first = 0, second = 0; ///< first < second
-  double reference_gap = 0.;          ///< gap at which the contact is stress-free [m]
-  double gap = 0.;                    ///< effective gap at the last evaluation [m]
-  double shear_force = 0.;            ///< S, along the tangent [N]
-  double normal_force = 0.;           ///< N >= 0 [N]
-  double slip_energy = 0.;            ///< dissipated by friction so far [J]
-  double dashpot_energy = 0.;
-};
-
 /// Two regions of grains that may touch, and their law.
 struct ContactGroup
 {
@@ -64,9 +40,26 @@ struct Contacts
   const LinearContact &law(const Grains &grains, const Contact &contact) const;
 };
 
+/// Whoever holds pairs of grains that must not meet as round ones.
+class PairOwner
+{
+public:
+  virtual ~PairOwner() = default;
+  virtual bool takes(std::int32_t i, std::int32_t j) = 0;
+};
+
 /// Find the candidates anew, keeping the state of pairs that stay. Jointed pairs are left
-/// out until their joint is removed; then the joint's installed gap is their reference.
-void search_contacts(const Grains &grains, const Joints &joints, Contacts &contacts);
+/// out until their joint is removed, but for those whose law has the contact beside the
+/// joint; the joint's installed gap is their reference. @p owner is asked about every
+/// pair that no joint holds; null: nobody.
+void search_contacts(const Grains &grains,
+                     const Joints &joints,
+                     Contacts &contacts,
+                     PairOwner *owner = nullptr);
+
+/// Take over the contacts that bonds broken in this step have left behind
+/// (Joints::released), in the order of (first, second).
+void take_released(Joints &joints, Contacts &contacts);
 
 /// True when some grain has moved by more than half the margin since the last search.
 bool needs_search(const Grains &grains, const Contacts &contacts);
@@ -82,15 +75,26 @@ struct ContactEnergies
 };
 ContactEnergies contact_energies(const Grains &grains, const Contacts &contacts);
 
-/// Normal and shear stiffness [N/m] of a pair: k_n = A E / L, A = 2 min(R), L = R_1 +
-/// R_2.
-double normal_stiffness(const LinearContact &law, double radius_1, double radius_2);
+/// A spring between two grains as the element that it is for the bound of the step:
+/// stiffness of its normal motion and its shear [N/m] and of its bending [N m], and the
+/// levers of its shear [m].
+struct PairStiffness
+{
+  std::int32_t first, second;
+  double normal, shear, bending;
+  double lever1, lever2;
+
+  double translation() const { return normal + shear; }
+  double rotation(const double lever) const { return shear * lever * lever + bending; }
+};
 
 /// Stable step of joints, contacts and springs to the ground together, as stable_step()
 /// of joints alone. Every candidate counts as if it touched, so that the bound holds from
 /// one search to the next; joints that are removed do not. Dashpots are not counted.
+/// @p more: further springs between grains.
 double stable_step(const Grains &grains,
                    const Joints &joints,
                    const Contacts &contacts,
-                   const std::vector<double> &extra = {});
+                   const std::vector<double> &extra = {},
+                   const std::vector<PairStiffness> &more = {});
 } // namespace antiform::discrete

@@ -43,8 +43,8 @@ ElementLaw<double> element_law(const Joints &joints,
   return law;
 }
 
-/// Share of the step, from its start, at which a quantity that goes linearly from @p old
-/// to @p now reaches @p limit; infinity when it does not, 0 when it was there already.
+} // namespace
+
 double share_at_limit(const double old, const double now, const double limit)
 {
   if (now < limit)
@@ -56,7 +56,8 @@ Crack make_crack(const Grains &grains,
                  const Joints &joints,
                  const std::size_t j,
                  const int e,
-                 const Stretch<double> &place,
+                 const double a,
+                 const double b,
                  const Bond mode,
                  const StepTime &time)
 {
@@ -66,7 +67,7 @@ Crack make_crack(const Grains &grains,
   const Vec2 normal = rotated(installed_normal, turn), tangent = perpendicular(normal);
   const double r1 = 0.5 * (joints.length[j] - joints.lever_difference[j]);
   const double r2 = 0.5 * (joints.length[j] + joints.lever_difference[j]);
-  const double s = 0.5 * (place.a + place.b);
+  const double s = 0.5 * (a + b);
   const Vec2 face1 =
       grains.position(one) + r1 * rotated(installed_normal, grains.rotation[one]);
   const Vec2 face2 =
@@ -83,14 +84,17 @@ Crack make_crack(const Grains &grains,
     crack.orientation += M_PI;
   else if (crack.orientation > 0.5 * M_PI)
     crack.orientation -= M_PI;
-  crack.length = place.b - place.a;
+  crack.length = b - a;
   crack.mode = mode;
   crack.layer = joints.group_of(j).layer;
   crack.joint = j;
+  crack.grain = one;
   crack.element = e;
   return crack;
 }
 
+namespace
+{
 /// Mean stresses over a bonded element.
 struct MeanStress
 {
@@ -156,7 +160,7 @@ std::size_t add_damaged(Joints &joints, const std::size_t joint)
 {
   const std::size_t g = joints.group_number(joint);
   joints.damage[joint] = static_cast<std::int32_t>(joints.damaged.size());
-  return joints.damaged.append(joint, g, joints.groups[g].law.n_elements);
+  return joints.damaged.append(joint, g, constants(joints.groups[g].law).n_elements);
 }
 
 void evaluate_damaged(const Grains &grains,
@@ -168,7 +172,7 @@ void evaluate_damaged(const Grains &grains,
                       std::vector<Crack> *cracks)
 {
   const std::size_t j = damaged.joint[k], one = joints.first[j], two = joints.second[j];
-  const FlatJoint &flat = joints.groups[damaged.group[k]].law;
+  const FlatJoint &flat = joints.groups[damaged.group[k]].flat();
   const ElementLaw<double> law = element_law(joints, j, flat, cracks != nullptr);
   const double weight = joints.weight.empty() ? 1. : joints.weight[j];
   const Deformation<double> before =
@@ -197,7 +201,7 @@ void evaluate_damaged(const Grains &grains,
       damaged.fracture_energy[k] +=
           weight * fracture_energy(drop, carries, broken, now, before);
       damaged.set_bond(k, e, mode);
-      cracks->push_back(make_crack(grains, joints, j, e, place, mode, time));
+      cracks->push_back(make_crack(grains, joints, j, e, place.a, place.b, mode, time));
       carries = broken;
       carries.dissipated = 0.; // it is in the fracture energy
     }
@@ -240,7 +244,7 @@ strain_energy(const Joints &joints, const DamagedJoints &damaged, const std::siz
   if (damaged.removed[k])
     return 0.;
   const std::size_t j = damaged.joint[k];
-  const FlatJoint &flat = joints.groups[damaged.group[k]].law;
+  const FlatJoint &flat = joints.groups[damaged.group[k]].flat();
   const ElementLaw<double> law = element_law(joints, j, flat, false);
   double energy = 0.;
   for (int e = 0; e < flat.n_elements; ++e)

@@ -24,6 +24,21 @@ void evaluate_damaged(const Grains &grains,
 /// \return its number
 std::size_t add_damaged(Joints &joints, std::size_t joint);
 
+/// The line of cracks.csv for a break of element @p element, which covers @p a to @p b of
+/// the joint, along its tangent from its centre [m].
+Crack make_crack(const Grains &grains,
+                 const Joints &joints,
+                 std::size_t joint,
+                 int element,
+                 double a,
+                 double b,
+                 Bond mode,
+                 const StepTime &time);
+
+/// Share of the step, from its start, at which a quantity that goes linearly from @p old
+/// to @p now reaches @p limit; infinity when it does not, 0 when it was there already.
+double share_at_limit(double old, double now, double limit);
+
 /// Strain energy of a damaged joint, weighted [J].
 double strain_energy(const Joints &joints, const DamagedJoints &damaged, std::size_t k);
 } // namespace antiform::discrete

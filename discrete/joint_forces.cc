@@ -1,3 +1,4 @@
+#include "discrete/brittle_bond.h"
 #include "discrete/joint_damage.h"
 #include "discrete/joint_kernel.h"
 #include "discrete/joints.h"
@@ -18,7 +19,7 @@ IntactKernelInput kernel_input(Joints &joints,
                                const std::vector<GrainLine> &lines,
                                const bool look_at_strengths)
 {
-  const FlatJoint &law = group.law;
+  const BondConstants law = constants(group.law);
   const auto pointer = [](const std::vector<double> &v)
   { return v.empty() ? nullptr : v.data(); };
   IntactKernelInput in{};
@@ -36,9 +37,9 @@ IntactKernelInput kernel_input(Joints &joints,
   in.initial_shear = pointer(joints.initial_shear);
   in.initial_rotation = pointer(joints.initial_rotation);
   in.shear_ratio = 1. / law.stiffness_ratio;
-  const double n = law.n_elements;
-  in.moment_factor = (law.element_moment ? 1. : 1. - 1. / (n * n)) / 12.;
-  in.outer_centroid = 1. - 1. / n;
+  in.moment_factor = law.moment_factor;
+  in.tension_arm = law.tension_arm;
+  in.coulomb_arm = law.coulomb_arm;
   constexpr double none = std::numeric_limits<double>::infinity();
   // An unbreakable group without strengths is not looked at.
   const bool tested = look_at_strengths &&
@@ -70,7 +71,9 @@ DamagedKernelInput damaged_input(Joints &joints, const bool look_at_strengths)
   std::vector<ElementConstants> &laws = joints.work.laws;
   laws.clear();
   for (const JointGroup &group : joints.groups)
-    laws.push_back(element_constants(group.law, look_at_strengths));
+    laws.push_back(is_brittle(group.law) // their records are removed: not looked at
+                       ? element_constants({}, false)
+                       : element_constants(group.flat(), look_at_strengths));
   DamagedJoints &damaged = joints.damaged;
   DamagedKernelInput in{};
   in.grains = joints.work.lines.data();
@@ -317,15 +320,19 @@ void break_intact(Grains &grains,
                   const bool keep_forces,
                   std::vector<Crack> &cracks)
 {
-  if (!joints.group_of(j).law.breakable)
+  const JointLaw &law = joints.group_of(j).law;
+  if (!constants(law).breakable)
   {
     joints.would_break[j] = 1;
     return;
   }
   const std::size_t n_before = cracks.size();
   const std::size_t k = add_damaged(joints, j);
-  evaluate_damaged(grains, joints, joints.damaged, k,
-                   deformation_before(grains, joints, j, now.dt), now, &cracks);
+  const JointDeformation before = deformation_before(grains, joints, j, now.dt);
+  if (is_brittle(law))
+    break_bond(grains, joints, law, k, before, now, cracks);
+  else
+    evaluate_damaged(grains, joints, joints.damaged, k, before, now, &cracks);
   if (cracks.size() == n_before)
   {
     // Over by a rounding of the kernel's order of operations: not over.
@@ -390,9 +397,7 @@ JointEnergies joint_energies(const Grains &grains, const Joints &joints)
   JointEnergies energies;
   for (const JointGroup &group : joints.groups)
   {
-    const double n = group.law.n_elements;
-    const double moment_factor =
-        (group.law.element_moment ? 1. : 1. - 1. / (n * n)) / 12.;
+    const BondConstants bond = constants(group.law);
     for (std::size_t j = group.begin; j < group.end; ++j)
     {
       if (joints.damage[j] >= 0)
@@ -401,10 +406,11 @@ JointEnergies joint_energies(const Grains &grains, const Joints &joints)
       const double full = 2. * joints.half_length[j];
       energies.strain += 0.5 * joints.stiffness[j] * full *
                          (joints.weight.empty() ? 1. : joints.weight[j]) *
-                         (d.gap * d.gap + d.shear * d.shear / group.law.stiffness_ratio +
-                          full * full * moment_factor * d.rotation * d.rotation);
+                         (d.gap * d.gap + d.shear * d.shear / bond.stiffness_ratio +
+                          full * full * bond.moment_factor * d.rotation * d.rotation);
     }
   }
+  energies.strain += released_energy(grains, joints);
   for (std::size_t k = 0; k < joints.damaged.size(); ++k)
   {
     energies.strain += strain_energy(joints, joints.damaged, k);

@@ -32,7 +32,8 @@ struct IntactKernelInput
   const double *initial_gap, *initial_shear, *initial_rotation; ///< or null
   double shear_ratio;                                           ///< 1 / kappa
   double moment_factor;    ///< 1/12, or (1 - 1/N^2)/12 without element moments
-  double outer_centroid;   ///< 1 - 1/N: centroid of the outer element over R
+  double tension_arm;      ///< of the bending stress in the test of tension, over R
+  double coulomb_arm;      ///< the same in the Coulomb test
   double tensile_strength; ///< infinity where strengths are not looked at
   double cohesion;
   double tan_friction;

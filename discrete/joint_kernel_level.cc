@@ -110,11 +110,13 @@ inline LaneMask intact_lanes(const IntactKernelInput &in,
   }
 
   const Lanes stiffness = get(in.stiffness + j), half_length = get(in.half_length + j);
-  // Tension first, then Coulomb: the outer element in tension is the first for both.
-  const Lanes worst =
-      stiffness * gap + absolute(stiffness * rotation) * half_length * in.outer_centroid;
-  const Lanes coulomb =
-      absolute(stiffness * in.shear_ratio * shear) + worst * in.tan_friction;
+  // Tension first, then Coulomb: of a flat joint the outer element in tension is the
+  // first for both.
+  const Lanes normal_stress = stiffness * gap;
+  const Lanes edge = absolute(stiffness * rotation) * half_length;
+  const Lanes worst = normal_stress + edge * in.tension_arm;
+  const Lanes coulomb = absolute(stiffness * in.shear_ratio * shear) +
+                        (normal_stress + edge * in.coulomb_arm) * in.tan_friction;
   const Lanes length = 2. * half_length;
   Lanes area_stiffness = stiffness * length;
   if (weighted)

@@ -11,7 +11,7 @@
 
 namespace antiform::discrete
 {
-void Joints::begin_group(const FlatJoint &law, const int layer, const std::string &name)
+void Joints::begin_group(const JointLaw &law, const int layer, const std::string &name)
 {
   JointGroup group;
   group.begin = group.end = size();
@@ -19,6 +19,14 @@ void Joints::begin_group(const FlatJoint &law, const int layer, const std::strin
   group.layer = layer;
   group.name = name;
   groups.push_back(group);
+}
+
+double joint_stiffness(const double radius_i,
+                       const double radius_j,
+                       const double modulus_i,
+                       const double modulus_j)
+{
+  return 1. / (radius_i / modulus_i + radius_j / modulus_j);
 }
 
 void Joints::add(const Grains &grains,
@@ -44,8 +52,9 @@ void Joints::add(const Grains &grains,
   length.push_back(distance);
   // The contact point is in the middle of the gap (or overlap): r = R + gap/2.
   lever_difference.push_back(grains.radius[j] - grains.radius[i]);
-  stiffness.push_back(1. / (grains.radius[i] / modulus_i + grains.radius[j] / modulus_j));
-  half_length.push_back(groups.back().law.radius_multiplier *
+  stiffness.push_back(
+      joint_stiffness(grains.radius[i], grains.radius[j], modulus_i, modulus_j));
+  half_length.push_back(constants(groups.back().law).radius_multiplier *
                         std::min(grains.radius[i], grains.radius[j]));
   damage.push_back(-1);
   would_break.push_back(0);
@@ -128,14 +137,19 @@ stiffness_sums(const Grains &grains, const Joints &joints, const bool weighted)
   StiffnessSums sums{std::vector<double>(grains.size(), 0.),
                      std::vector<double>(grains.size(), 0.)};
   for (const JointGroup &group : joints.groups)
+  {
+    const BondConstants bond = constants(group.law);
+    // Rotation: as the whole interface of a flat joint, whatever share of it elements
+    // without a moment of their own leave out.
+    const double bending_factor = bond.moment_factor > 0. ? 1. / 12. : 0.;
     for (std::size_t j = group.begin; j < group.end; ++j)
     {
       const double full = 2. * joints.half_length[j];
       double normal = joints.stiffness[j] * full;
       if (weighted && !joints.weight.empty())
         normal *= joints.weight[j];
-      const double shear = normal / group.law.stiffness_ratio;
-      const double bending = normal * full * full / 12.;
+      const double shear = normal / bond.stiffness_ratio;
+      const double bending = normal * full * full * bending_factor;
       for (const int side : {0, 1})
       {
         const std::size_t i = side == 0 ? joints.first[j] : joints.second[j];
@@ -145,6 +159,7 @@ stiffness_sums(const Grains &grains, const Joints &joints, const bool weighted)
         sums.rotation[i] += shear * lever * lever + bending;
       }
     }
+  }
   return sums;
 }
 } // namespace antiform::discrete

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "discrete/flat_joint.h"
+#include "discrete/bond_laws.h"
 #include "discrete/grains.h"
+#include "discrete/linear_contact.h"
 
 #include <cstdint>
 #include <utility>
@@ -14,9 +15,12 @@ struct JointGroup
 {
   std::size_t begin = 0; ///< first joint
   std::size_t end = 0;   ///< one past the last
-  FlatJoint law;
+  JointLaw law;
   int layer = 0; ///< region that a crack of this group is attributed to
   std::string name;
+
+  /// The law of a group of flat joints. \pre it is one
+  const FlatJoint &flat() const { return std::get<FlatJoint>(law); }
 };
 
 /// What a joint gives to its grains: force on the second grain (the first gets the
@@ -90,9 +94,11 @@ struct Crack
   double length = 0.;      ///< [m]
   Bond mode = Bond::broken_in_tension;
   int layer = 0;
-  std::size_t joint = 0;
+  std::size_t joint = 0; ///< no_joint of a smooth joint
   int element = 0;
+  std::size_t grain = 0; ///< one of the two that it parts
 };
+constexpr std::size_t no_joint = std::size_t(-1);
 
 /// Consecutive joints of one group that a kernel takes at a time.
 struct JointBlock
@@ -176,6 +182,15 @@ struct Joints
   std::vector<std::int32_t> damage; ///< index into damaged, or -1 while intact
   DamagedJoints damaged;            ///< in the order in which they lost their first bond
   std::vector<unsigned char> would_break; ///< unbreakable joints that exceeded a strength
+  /// Contacts that bonds broken in this step leave to their grains. The record of the
+  /// bond has their force until whoever owns the contacts takes them, before the next
+  /// step.
+  struct Released
+  {
+    Contact contact;
+    std::int32_t damaged; ///< index of the record
+  };
+  std::vector<Released> released;
 
   /// Result of a step that was asked for them.
   std::vector<JointForce> force;
@@ -204,10 +219,15 @@ struct Joints
            double modulus_i,
            double modulus_j);
   /// Start a new group; later add() go to it.
-  void begin_group(const FlatJoint &law, int layer, const std::string &name);
+  void begin_group(const JointLaw &law, int layer, const std::string &name);
   /// Build the sum order. Call once, after the last add().
   void finish(std::size_t n_grains);
 };
+
+/// k_n [Pa/m] of two grains of moduli E_i and E_j, springs in series:
+/// 1 / (R_i / E_i + R_j / E_j).
+double
+joint_stiffness(double radius_i, double radius_j, double modulus_i, double modulus_j);
 
 /// Deformation of joint @p j for the present displacements, prestress included.
 struct JointDeformation

@@ -8,25 +8,17 @@ namespace antiform::discrete
 {
 namespace
 {
-/// A joint or contact as the element that it is for the bound: stiffness of its normal
-/// motion, its shear and its bending, and the levers of its shear.
-struct StiffPair
-{
-  std::int32_t first, second;
-  double normal, shear; ///< [N/m]
-  double bending;       ///< [N m]
-  double lever1, lever2;
-
-  double translation() const { return normal + shear; }
-  double rotation(const double lever) const { return shear * lever * lever + bending; }
-};
-
-std::vector<StiffPair>
+std::vector<PairStiffness>
 stiff_pairs(const Grains &grains, const Joints &joints, const Contacts &contacts)
 {
-  std::vector<StiffPair> pairs;
+  std::vector<PairStiffness> pairs;
   pairs.reserve(joints.size() + contacts.contacts.size());
   for (const JointGroup &group : joints.groups)
+  {
+    const BondConstants bond = constants(group.law);
+    // As the whole interface of a flat joint, whatever share of it elements without a
+    // moment of their own leave out.
+    const double bending_factor = bond.moment_factor > 0. ? 1. / 12. : 0.;
     for (std::size_t j = group.begin; j < group.end; ++j)
     {
       if (joints.damage[j] >= 0 && joints.damaged.removed[joints.damage[j]] != 0)
@@ -36,10 +28,12 @@ stiff_pairs(const Grains &grains, const Joints &joints, const Contacts &contacts
           joints.stiffness[j] * full * (joints.weight.empty() ? 1. : joints.weight[j]);
       const double difference = joints.lever_difference[j];
       pairs.push_back({joints.first[j], joints.second[j], normal,
-                       normal / group.law.stiffness_ratio, normal * full * full / 12.,
+                       normal / bond.stiffness_ratio,
+                       normal * full * full * bending_factor,
                        0.5 * (joints.length[j] - difference),
                        0.5 * (joints.length[j] + difference)});
     }
+  }
   for (const Contact &contact : contacts.contacts)
   {
     const LinearContact &law = contacts.law(grains, contact);
@@ -57,11 +51,13 @@ stiff_pairs(const Grains &grains, const Joints &joints, const Contacts &contacts
 double stable_step(const Grains &grains,
                    const Joints &joints,
                    const Contacts &contacts,
-                   const std::vector<double> &extra)
+                   const std::vector<double> &extra,
+                   const std::vector<PairStiffness> &more)
 {
-  const std::vector<StiffPair> pairs = stiff_pairs(grains, joints, contacts);
+  std::vector<PairStiffness> pairs = stiff_pairs(grains, joints, contacts);
+  pairs.insert(pairs.end(), more.begin(), more.end());
   std::vector<double> translation(grains.size(), 0.), rotation(grains.size(), 0.);
-  for (const StiffPair &pair : pairs)
+  for (const PairStiffness &pair : pairs)
   {
     translation[pair.first] += pair.translation();
     translation[pair.second] += pair.translation();
@@ -76,7 +72,7 @@ double stable_step(const Grains &grains,
   // is sum(k) / (k_b m). Normal motion, and shear with rotation, are uncoupled modes of
   // it.
   double largest = 0.;
-  for (const StiffPair &pair : pairs)
+  for (const PairStiffness &pair : pairs)
   {
     const std::int32_t i = pair.first, j = pair.second;
     const double moving = (translation[i] * grains.inverse_mass[i] +

@@ -4,11 +4,13 @@
 #include "discrete/integrate.h"
 #include "discrete/joint_damage.h"
 #include "discrete/joints.h"
+#include "discrete/smooth_joints.h"
 #include "discrete/walls.h"
 
 #include <omp.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -102,16 +104,16 @@ inline Grains random_pack(const int columns, const int rows, const std::uint64_t
 
 /// Bond all pairs whose gap is at most @p installation_gap by one law.
 inline void
-bond_all(Sample &sample, const FlatJoint &law, const double installation_gap = 0.15)
+bond_all(Sample &sample, const JointLaw &law, const double installation_gap = 0.15)
 {
   sample.joints.begin_group(law, 0, "rock");
   for (const auto &[i, j] : pairs_within(sample.grains, installation_gap, 0, 0))
-    sample.joints.add(sample.grains, i, j, law.effective_modulus, law.effective_modulus);
+    sample.joints.add(sample.grains, i, j, joint_modulus(law), joint_modulus(law));
   sample.joints.finish(sample.grains.size());
 }
 
 /// Two grains along a direction, a gap (or overlap) apart, with one joint.
-inline Sample bonded_pair(const FlatJoint &law,
+inline Sample bonded_pair(const JointLaw &law,
                           const double radius_1 = 0.5,
                           const double radius_2 = 0.5,
                           const double gap = 0.,
@@ -122,7 +124,7 @@ inline Sample bonded_pair(const FlatJoint &law,
   pair.grains.add({0., 0.}, radius_1, 1., 0);
   pair.grains.add(rotated({distance, 0.}, angle), radius_2, 1., 0);
   pair.joints.begin_group(law, 0, "pair");
-  pair.joints.add(pair.grains, 0, 1, law.effective_modulus, law.effective_modulus);
+  pair.joints.add(pair.grains, 0, 1, joint_modulus(law), joint_modulus(law));
   pair.joints.finish(2);
   return pair;
 }
@@ -181,6 +183,7 @@ struct ExplicitRun
 {
   Sample sample;
   Contacts contacts;
+  std::optional<SmoothJoints> smooth;
   std::vector<Wall> walls;
   GrainDamping damping;
   Vec2 gravity; ///< [m/s^2]; no part of the energy terms
@@ -204,9 +207,12 @@ struct ExplicitRun
     if (has_contacts)
     {
       if (needs_search(grains, contacts))
-        search_contacts(grains, sample.joints, contacts);
+        search();
       add_contact_forces(grains, contacts, dt);
     }
+    if (smooth)
+      add_smooth_joint_forces(grains, *smooth, {step, time, dt},
+                              breaks ? &sample.cracks : nullptr);
     for (Wall &wall : walls)
       add_wall_forces(grains, wall);
     if (gravity.x != 0. || gravity.y != 0.)
@@ -215,6 +221,18 @@ struct ExplicitRun
         grains.force_x[i] += grains.mass[i] * gravity.x;
         grains.force_y[i] += grains.mass[i] * gravity.y;
       }
+  }
+
+  void search()
+  {
+    if (!smooth)
+    {
+      search_contacts(sample.grains, sample.joints, contacts);
+      return;
+    }
+    SmoothJointSearch fractures(sample.grains, *smooth, contacts.margin);
+    search_contacts(sample.grains, sample.joints, contacts, &fractures);
+    fractures.finish();
   }
 
   /// Forces, damping, kick; the state is then that of the time of the positions. A wall
@@ -235,6 +253,7 @@ struct ExplicitRun
   void second_half(const double dt)
   {
     add_work(dt);
+    take_released(sample.joints, contacts);
     drift(sample.grains, dt);
     for (Wall &wall : walls)
       wall.displacement += dt * wall.velocity;
@@ -259,6 +278,13 @@ struct ExplicitRun
     e.slip = joints.slip + touching.slip;
     e.fracture = joints.fracture;
     e.dashpot = touching.dashpot;
+    if (smooth)
+    {
+      const JointEnergies fractures = smooth_joint_energies(*smooth);
+      e.strain += fractures.strain;
+      e.slip += fractures.slip;
+      e.fracture += fractures.fracture;
+    }
     for (const double energy : damping.energy)
       e.damping += energy;
     for (const Wall &wall : walls)

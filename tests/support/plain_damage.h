@@ -234,7 +234,7 @@ inline double plain_strain_energy(const Joints &joints, const PlainDamagedJoint 
   if (damaged.removed)
     return 0.;
   const std::size_t j = damaged.joint;
-  const FlatJoint &law = joints.group_of(j).law;
+  const FlatJoint &law = joints.group_of(j).flat();
   const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
   double energy = 0.;
   for (int e = 0; e < law.n_elements; ++e)
@@ -253,7 +253,7 @@ inline double plain_strain_energy(const Joints &joints, const PlainDamagedJoint 
 
 inline PlainDamagedJoint plain_damaged(const Joints &joints, const std::size_t joint)
 {
-  const int n = joints.group_of(joint).law.n_elements;
+  const int n = joints.group_of(joint).flat().n_elements;
   PlainDamagedJoint damaged;
   damaged.joint = joint;
   damaged.bond.assign(n, Bond::bonded);
@@ -272,7 +272,7 @@ inline void plain_evaluate(const Grains &grains,
                            std::vector<Crack> *cracks)
 {
   const std::size_t j = damaged.joint;
-  const FlatJoint &law = joints.group_of(j).law;
+  const FlatJoint &law = joints.group_of(j).flat();
   const double weight = joints.weight.empty() ? 1. : joints.weight[j];
   const double k_n = joints.stiffness[j], k_s = k_n / law.stiffness_ratio;
   ElementForce sum;

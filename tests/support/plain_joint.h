@@ -15,7 +15,7 @@ JointForce
 plain_joint_force(const Grains &grains, const Joints &joints, const std::size_t j)
 {
   const std::size_t one = joints.first[j], two = joints.second[j];
-  const FlatJoint &law = joints.group_of(j).law;
+  const FlatJoint &law = joints.group_of(j).flat();
   const Real turn1 = grains.rotation[one], turn2 = grains.rotation[two];
   const Real turn = (turn1 + turn2) / 2, theta = turn2 - turn1;
   const Real d0 = joints.length[j], n0x = joints.normal_x[j], n0y = joints.normal_y[j];

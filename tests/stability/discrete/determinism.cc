@@ -76,7 +76,7 @@ Sample renumbered(const Sample &sample, const std::vector<std::size_t> &number)
   Grains at_reference = other.grains; // joints are installed before anything moves
   at_reference.displacement_x.assign(g.size(), 0.);
   at_reference.displacement_y.assign(g.size(), 0.);
-  const FlatJoint law = sample.joints.groups[0].law;
+  const FlatJoint law = sample.joints.groups[0].flat();
   other.joints.begin_group(law, 0, "rock");
   std::vector<std::size_t> order(sample.joints.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -154,7 +154,7 @@ TEST(StateFile, NamesWhatIsWrongWithAFile)
   EXPECT_FALSE(load_error(path).empty());
 
   std::string newer = whole;
-  newer.replace(newer.find("version 3"), 9, "version 7");
+  newer.replace(newer.find("version 4"), 9, "version 7");
   put(path, newer);
   EXPECT_NE(load_error(path).find("format version 7"), std::string::npos);
 }

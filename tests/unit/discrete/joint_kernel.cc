@@ -80,7 +80,7 @@ KernelResult run_kernel(const KernelLevel &level, Sample &sample)
   in.initial_rotation = pointer(joints.initial_rotation);
   in.shear_ratio = 1. / 2.2;
   in.moment_factor = 1. / 12.;
-  in.outer_centroid = 2. / 3.;
+  in.tension_arm = in.coulomb_arm = 2. / 3.;
   in.tensile_strength = 1.; // many of the moved joints are over one of these
   in.cohesion = 2.;
   in.tan_friction = 0.2;

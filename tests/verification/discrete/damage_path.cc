@@ -188,7 +188,7 @@ TEST(BrokenElement, NewlyClosedPartsCarryNoShear)
   // Half closed and sheared, then closed as a whole: the force is that of the first half.
   Sample pair = bonded_pair(brittle_law(1));
   const double k = pair.joints.stiffness[0], k_s = k / 2.2, R = 0.5;
-  pair.joints.groups[0].law.residual_friction = 100.;
+  std::get<FlatJoint>(pair.joints.groups[0].law).residual_friction = 100.;
   break_element(pair.grains, pair.joints, 0, 0, Bond::broken_in_tension);
   const double theta = 1e-2;
   load(pair, {0., 0., theta}); // closed for s > 0

@@ -203,7 +203,7 @@ TEST(JointStrength, CountsThePrestressIn)
                            },
                            2e-5)
                            .before.shear;
-  const double strength = 60e6 + 20e6 * pair.joints.groups[0].law.tan_friction;
+  const double strength = 60e6 + 20e6 * pair.joints.groups[0].flat().tan_friction;
   EXPECT_NEAR(shear / (2. * R2) / strength, 1., 1e-9); // bisection's round-off
   const double tension = first_break(
                              pair,
