@@ -147,7 +147,16 @@ void declare_parameters(Parameters &parameters,
                         const std::vector<std::string> &sections,
                         Declarations &declarations);
 
-/// The entries of the section Calibration.
+// The entries of sections with a file of their own.
+/// Strengths of a flat joint: those of the layer and of the matrix' grains.
+void declare_strengths(double &tensile_strength,
+                       double &cohesion,
+                       double &tan_friction,
+                       double &residual_friction,
+                       Declarations &entries);
+void declare(LayerParameters &layer, Declarations &entries);
+void declare(FracturesParameters &fractures, Declarations &entries);
+void declare(MeasurementCirclesParameters &circles, Declarations &entries);
 void declare(CalibrationParameters &calibration, Declarations &entries);
 
 /// A value that may stand alone but not in this scene.
@@ -158,6 +167,11 @@ struct Finding
 };
 /// Everything that is wrong between the values of a scene.
 std::vector<Finding> check_parameters(const Parameters &parameters);
+/// A number as a message shows it, to four digits.
+std::string short_text(double number);
+/// The part of it that packings and measurement circles add. \pre nothing else is wrong
+void check_packing(const Parameters &parameters, std::vector<Finding> &findings);
+void check_circles(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that a calibration adds.
 void check_calibration(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases

@@ -106,6 +106,8 @@ std::vector<Effect> list_effects(const Parameters &p)
                         "damping and the record of equilibrium need it", no_steps));
   list.push_back(
       choose("record", steps, "history, cracks and fields", "written after each solve"));
+  list.push_back(choose("measurement circles", p.has("measurement circles"),
+                        "listed in Components", "not listed in Components"));
   list.push_back(choose("density scaling", p.run.driver == "quasi-static",
                         "quasi-static driver: inertia is free to choose",
                         "only the quasi-static driver may scale densities"));

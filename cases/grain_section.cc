@@ -1,6 +1,7 @@
 #include "cases/grain_section.h"
 
 #include "cases/fracture_list.h"
+#include "cases/layer_packing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,16 +14,6 @@ using namespace discrete;
 
 namespace
 {
-PackingParameters packing_parameters(const Parameters &p, const int seed)
-{
-  PackingParameters packing;
-  packing.mean_diameter = p.grain_diameter();
-  packing.radius_ratio = p.layer.radius_ratio;
-  packing.installation_gap_ratio = p.layer.installation_gap;
-  packing.seed = static_cast<std::uint64_t>(seed);
-  return packing;
-}
-
 FlatJoint matrix_law(const Parameters &p)
 {
   FlatJoint law;
@@ -201,12 +192,10 @@ void bond(GrainSection &section,
 }
 } // namespace
 
-MatrixRock make_matrix_rock(const Parameters &p)
+MatrixRock make_matrix_rock(const Parameters &p, const Progress &progress)
 {
   MatrixRock rock;
-  const PackingParameters packing = packing_parameters(p, p.layer.seed + 1000);
-  const double side = p.matrix.tile_size * p.grain_diameter();
-  rock.tile = pack_periodic({side, side}, packing);
+  rock.tile = make_tile(p, progress);
   rock.installation_gap = p.layer.installation_gap * 0.5 * p.grain_diameter();
   try
   {
@@ -236,18 +225,18 @@ GrainSection make_grains(const Parameters &p,
   section.mean_radius = 0.5 * p.grain_diameter();
   std::vector<Placed> placed;
   progress("packing the layer");
-  const Packing layer =
-      pack_polygon(geometry.layer_outline(), packing_parameters(p, p.layer.seed));
+  const LayerPacking packed = make_layer_packing(p, geometry, progress);
+  const Packing &layer = packed.packing;
   section.layer_quality = layer.quality;
   for (const Disk &disk : layer.disks)
     placed.push_back({disk, layer_region, -1});
-  const double layer_gap = p.layer.installation_gap * 0.5 * p.grain_diameter();
+  const double layer_gap = packed.installation_gap;
   section.installation_gap = layer_gap;
   double matrix_gap = 0.;
   if (geometry.has_matrix())
   {
     progress("packing the matrix");
-    section.matrix = make_matrix_rock(p);
+    section.matrix = make_matrix_rock(p, progress);
     section.modulus.push_back(section.matrix->law.effective_modulus);
     matrix_gap = section.matrix->installation_gap;
     for (const Placed &one : place_matrix(*section.matrix, geometry, layer.disks, holds))

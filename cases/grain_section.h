@@ -50,7 +50,7 @@ using Progress = std::function<void(const std::string &)>;
 
 /// Pack the tile and find the law that gives it the deck's moduli. Throws InputError when
 /// the Poisson ratio is out of a disk packing's reach.
-MatrixRock make_matrix_rock(const Parameters &parameters);
+MatrixRock make_matrix_rock(const Parameters &parameters, const Progress &progress);
 
 /// Pack, place and bond the grains. Matrix grains are the copies of the tile whose
 /// centres satisfy @p holds and lie in the matrix; those without a path of joints to the

@@ -11,8 +11,6 @@
 
 namespace antiform::cases
 {
-namespace
-{
 std::string short_text(const double number)
 {
   std::ostringstream text;
@@ -21,6 +19,8 @@ std::string short_text(const double number)
   return text.str();
 }
 
+namespace
+{
 std::string metres(const double length)
 {
   return short_text(length) + " m";
@@ -355,6 +355,10 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_calibration(p, findings);
   if (p.has("layer") && p.has("fractures") && findings.empty())
     check_drawn_fractures(p, findings);
+  if (p.has("layer") && p.layer.representation == "grains" && findings.empty())
+    check_packing(p, findings);
+  if (p.has("measurement circles") && findings.empty())
+    check_circles(p, findings);
   if (p.has("layer") && findings.empty()) // else the geometry may not exist
     check_memory(p, findings);
   return findings;

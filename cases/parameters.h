@@ -45,10 +45,13 @@ struct LayerParameters
   double poisson_ratio = 0.2;            ///< macroscopic plane-strain nu
   double compressive_strength = 162e6;   ///< UCS [Pa]
   // grains
-  double grains_across = 12.;    ///< h over mean diameter
-  double radius_ratio = 1.66;    ///< R_max/R_min
-  double installation_gap = 0.3; ///< over the mean radius
-  double grain_density = 2500.;  ///< [kg/m^3]
+  double grains_across = 12.;      ///< h over mean diameter
+  double radius_ratio = 1.66;      ///< R_max/R_min
+  double installation_gap = 0.3;   ///< over the mean radius
+  double porosity = 0.;            ///< wanted; 0: jammed [-]
+  double coordination_number = 0.; ///< wanted; 0: by the installation gap [-]
+  double locked_in_stress = 0.;    ///< isotropic pressure in the bonds [Pa]
+  double grain_density = 2500.;    ///< [kg/m^3]
   int seed = 1;
   std::string bond_model = "flat joint"; ///< or parallel bond, contact bond
   discrete::FlatJoint joint;             ///< breakable, of whichever model
@@ -145,6 +148,15 @@ struct FracturesParameters
   discrete::SmoothJoint law;
 };
 
+/// Circles in which averages of the grains are recorded.
+struct MeasurementCirclesParameters
+{
+  double radius = 5.;  ///< over the mean grain diameter [-]
+  std::string centres; ///< "x y; x y" [m]; empty: a grid along the layer
+  int along = 0;       ///< of the grid; 0: side by side
+  int across = 1;
+};
+
 struct DampingParameters
 {
   std::string form = "combined"; ///< or local
@@ -215,6 +227,7 @@ struct Parameters
   WallsParameters walls;
   ServoWallsParameters servo_walls;
   FracturesParameters fractures;
+  MeasurementCirclesParameters measurement_circles;
   DampingParameters damping;
   RunParameters run;
   OutputParameters output;

@@ -1,6 +1,8 @@
 #include "cases/program.h"
 
+#include "cases/circle_record.h"
 #include "cases/interrupt.h"
+#include "cases/layer_packing.h"
 #include "cases/output_directory.h"
 #include "cases/recorder.h"
 #include "cases/run_log.h"
@@ -74,6 +76,11 @@ public:
     recorder_ = recorder.get();
     scene_->simulation->add(std::move(recorder), {coupling::Stage::sample}, 0, "record",
                             reason_for(parameters_, "record"));
+    if (parameters_.has("measurement circles"))
+      scene_->simulation->add(
+          std::make_unique<CircleRecord>(*scene_, options_.output, options_.resume),
+          {coupling::Stage::sample}, 1, "measurement circles",
+          reason_for(parameters_, "measurement circles"));
     scene_->simulation->set_sampler([this](const coupling::Clock &clock)
                                     { return recorder_->is_due(clock); });
     if (state != nullptr)
@@ -129,6 +136,8 @@ private:
       log_.line(std::to_string(s.grains->state.grains.size()) + " grains, " +
                 std::to_string(s.grains->state.joints.size()) + " joints (kernel " +
                 discrete::joint_kernel_level() + ")");
+    if (s.grains)
+      log_.line("packing of the layer: " + packing_text(s.grains->layer_quality));
     if (s.mesh)
       log_.line(std::to_string(s.triangulation->n_global_active_cells()) + " cells, " +
                 std::to_string(s.solid->dof_handler().n_dofs()) + " degrees of freedom" +
@@ -232,6 +241,8 @@ private:
         s.mesh ? static_cast<std::int64_t>(s.solid->dof_handler().n_dofs()) : 0;
     sizes["multipliers"] =
         s.bridging ? static_cast<std::int64_t>(s.bridging->n_multipliers()) : 0;
+    if (s.grains)
+      report_packing(s.grains->layer_quality, summary.results);
     summary.steps = s.simulation->clock().step;
     for (const coupling::EffectCount &count : s.simulation->effects())
     {

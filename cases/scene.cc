@@ -8,6 +8,7 @@
 #include "continuum/errors.h"
 #include "continuum/foundation.h"
 #include "continuum/section_mesh.h"
+#include "discrete/locked_in.h"
 
 #include <algorithm>
 #include <cmath>
@@ -168,6 +169,10 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
       scene->walls = make_walls(*scene->grains, scene->geometry);
     if (p.has("servo walls"))
       scene->side_walls = make_side_walls(*scene->grains, scene->geometry);
+    if (p.layer.locked_in_stress > 0.)
+      discrete::lock_in(scene->grains->state.grains, scene->geometry.layer_outline(),
+                        p.layer.locked_in_stress, scene->grains->state.joints,
+                        scene->walls);
     if (p.has_contacts_from_start())
     {
       scene->contacts = make_contacts(p, *scene->grains, ContactsFor::intact_scene);

@@ -155,10 +155,6 @@ void SpecimenRecord::fill(const Scene &scene,
                           Summary &summary) const
 {
   auto &results = summary.results;
-  const discrete::PackingQuality &quality = scene.grains->layer_quality;
-  results["porosity"] = {quality.porosity, "-"};
-  results["coordination_number"] = {quality.coordination_number, "-"};
-  results["floaters"] = {static_cast<double>(quality.floaters), "-"};
   if (scene.grips == nullptr)
     results["confining_pressure"] = {
         scene.side_walls.empty() ? 0. : scene.parameters.servo_walls.pressure, "Pa"};

@@ -18,10 +18,6 @@ namespace
 {
 // Lengths are in mean diameters within this file.
 
-// Measured on jammed packings of radius ratio 1.66: solid fraction far from walls, and
-// the void that a frictionless wall makes along its length. First estimates only.
-constexpr double jammed_solid_fraction = 0.845;
-constexpr double wall_void = 0.08;
 // The cloud is compressed by this before it is let out to the target overlap: a packing
 // that is approached from above is jammed all the way.
 constexpr double first_compression = 0.02;
@@ -265,8 +261,7 @@ std::vector<Disk> pack(const Vessel &vessel, const PackingParameters &p)
   const double smallest = 1. / (1. + p.radius_ratio);
   const double mean_square =
       smallest * smallest * (1. + p.radius_ratio + p.radius_ratio * p.radius_ratio) / 3.;
-  double wanted = (jammed_solid_fraction * vessel.area - wall_void * vessel.perimeter) /
-                  (M_PI * mean_square);
+  double wanted = jammed_solid_area(vessel.area, vessel.perimeter) / (M_PI * mean_square);
   std::vector<Disk> best;
   double best_error = 0.;
   for (int trial = 0; trial < 4; ++trial)
@@ -301,8 +296,7 @@ finish(std::vector<Disk> &disks, const Vessel &vessel, const PackingParameters &
 }
 } // namespace
 
-Packing pack_polygon(const std::vector<Vec2> &polygon,
-                     const PackingParameters &parameters)
+Packing pack_jammed(const std::vector<Vec2> &polygon, const PackingParameters &parameters)
 {
   check(parameters);
   if (!is_simple(polygon))
@@ -346,6 +340,8 @@ Packing pack_polygon(const std::vector<Vec2> &polygon,
                          "smaller grains",
                          edges.depth(d.centre), d.radius);
   packing.quality = finish(packing.disks, vessel, parameters);
+  packing.quality.stress_variation =
+      stress_variation(packing.disks, outline, parameters.mean_diameter);
   for (Disk &d : packing.disks)
     d.centre += origin;
   return packing;

@@ -1,6 +1,7 @@
 #include "discrete/packing_quality.h"
 
 #include "discrete/floaters.h"
+#include "discrete/measurement_circles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,56 @@ double lens_area(const double radius_1, const double radius_2, const double dist
   const double x =
       (distance * distance + radius_1 * radius_1 - radius_2 * radius_2) / (2. * distance);
   return segment_area(radius_1, x) + segment_area(radius_2, distance - x);
+}
+
+double jammed_solid_area(const double area, const double perimeter)
+{
+  // Measured: solid fraction far from walls, and the void that a frictionless wall makes
+  // along its length.
+  return 0.845 * area - 0.08 * perimeter;
+}
+
+double stress_variation(const std::vector<Disk> &disks,
+                        const std::vector<Vec2> &outline,
+                        const double mean_diameter)
+{
+  constexpr double largest_circle = 5.;
+  double perimeter = 0.;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    perimeter += norm(outline[(k + 1) % outline.size()] - outline[k]);
+  const double mean_width = 2. * area(outline) / perimeter;
+  const double radius = std::min(largest_circle, 0.4 * mean_width);
+  const PolygonEdges edges(outline, radius);
+
+  std::vector<Disk> scaled = disks;
+  for (Disk &d : scaled)
+    d = {(1. / mean_diameter) * d.centre, d.radius / mean_diameter};
+  std::vector<MeasurementCircle> circles;
+  for (const Disk &d : scaled)
+    if (edges.depth(d.centre) >= radius &&
+        std::all_of(circles.begin(), circles.end(),
+                    [&](const MeasurementCircle &other)
+                    { return norm(other.centre - d.centre) >= 2. * radius; }))
+      circles.push_back({d.centre, radius});
+  if (circles.size() < 3)
+    return 0.;
+
+  std::vector<double> pressure(circles.size(), 0.);
+  for (const DiskPair &p : disk_pairs(scaled, {0., 0.}, 0.))
+  {
+    const Disk &a = scaled[p.first], &b = scaled[p.second];
+    const double distance = norm(b.centre - a.centre),
+                 overlap = std::max(0., a.radius + b.radius - distance);
+    for (std::size_t k = 0; k < circles.size(); ++k)
+      pressure[k] += overlap * distance * share_inside(a.centre, b.centre, circles[k]);
+  }
+  double mean = 0., square = 0.;
+  const double n = static_cast<double>(pressure.size());
+  for (const double p : pressure)
+    mean += p / n;
+  for (const double p : pressure)
+    square += (p - mean) * (p - mean) / (n - 1.);
+  return mean > 0. ? std::sqrt(square) / mean : 0.;
 }
 
 PackingQuality packing_quality(const std::vector<Disk> &disks,

@@ -279,6 +279,12 @@ void add_smooth_joint_forces(Grains &grains,
   }
 }
 
+Vec2 force_on_second(const Grains &grains, const SmoothContact &c)
+{
+  const Frame f = frame(grains, c);
+  return -c.area * (c.normal_stress * f.normal + c.shear_stress * f.tangent);
+}
+
 JointEnergies smooth_joint_energies(const SmoothJoints &joints)
 {
   JointEnergies energies;

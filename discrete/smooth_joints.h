@@ -73,6 +73,9 @@ void add_smooth_joint_forces(Grains &grains,
                              const StepTime &now,
                              std::vector<Crack> *cracks);
 
+/// Of the last evaluation, at the present positions [N].
+Vec2 force_on_second(const Grains &grains, const SmoothContact &contact);
+
 /// Strain energy, slip and fracture so far [J].
 JointEnergies smooth_joint_energies(const SmoothJoints &joints);
 

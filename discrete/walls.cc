@@ -109,6 +109,12 @@ double region_reaction(const Grains &grains, const Wall &wall, const int region)
   return sum;
 }
 
+double wall_force(const Wall &wall, const WallContact &contact, const Grains &grains)
+{
+  const double gap = elastic_gap(wall, contact, grains);
+  return gap < 0. ? -contact.weight * contact.stiffness * gap : 0.;
+}
+
 double wall_energy(const Grains &grains, const Wall &wall)
 {
   double energy = 0.;

@@ -58,6 +58,9 @@ void add_wall_forces(Grains &grains, Wall &wall);
 /// Part of the wall's present pressing force that grains of @p region take [N].
 double region_reaction(const Grains &grains, const Wall &wall, int region);
 
+/// Force with which @p wall presses the grain of @p contact, along its normal [N].
+double wall_force(const Wall &wall, const WallContact &contact, const Grains &grains);
+
 /// Strain energy of the wall's contacts [J].
 double wall_energy(const Grains &grains, const Wall &wall);
 
