@@ -94,6 +94,8 @@ std::vector<Effect> list_effects(const Parameters &p)
         choose(name, p.has(name), "listed in Components", "not listed in Components"));
   list.push_back(choose("servo walls", p.has("servo walls"), "listed in Components",
                         "not listed in Components"));
+  list.push_back(choose("membrane", p.has("membrane"), "listed in Components",
+                        "not listed in Components"));
   list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
                         "gravity or surface pressure: the section was laid down under it",
                         "neither gravity nor surface pressure"));

@@ -37,11 +37,11 @@ void check_packing(const Parameters &p, std::vector<Finding> &findings)
   if (layer.locked_in_stress == 0.)
     return;
   const std::string entry = "Layer/Locked-in stress";
-  if (!p.is_specimen() || p.has("servo walls") || p.walls.action == "pull")
+  if (!p.is_specimen() || p.confinement() != nullptr || p.walls.action == "pull")
     findings.push_back(
         {{entry, "Components"},
          "a locked-in stress is for a straight layer of grains between platens, without "
-         "matrix, servo walls and grips. Give 0."});
+         "matrix, confinement and grips. Give 0."});
   if (layer.porosity > 0.)
     findings.push_back({{entry, "Layer/Porosity"},
                         "grains that are apart press on nothing. Give 0 for one of the "

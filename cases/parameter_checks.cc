@@ -84,21 +84,27 @@ void check_specimen(const Parameters &p, Findings &findings)
                                "'Layer/Shape' = 'straight', 'Layer/Representation' = "
                                "'grains' and no matrix in 'Components'";
   const bool pulls = p.has("walls") && p.walls.action == "pull";
-  if (p.has("servo walls") && (!p.is_specimen() || !p.has("walls")))
-    findings.push_back(
-        {{"Components"},
-         "servo walls confine a specimen between walls, " + specimen + ", and walls."});
-  if (p.has("servo walls") && p.servo_walls.pressure > 0.02 * p.layer.young_modulus)
-    findings.push_back({{"Servo walls/Pressure", "Layer/Young modulus"},
+  if (p.confinement() != nullptr && (!p.is_specimen() || !p.has("walls")))
+    findings.push_back({{"Components"},
+                        "servo walls and membrane confine a specimen between walls, " +
+                            specimen + ", and walls."});
+  if (p.has("servo walls") && p.has("membrane"))
+    findings.push_back({{"Components"},
+                        "servo walls and membrane both confine the specimen. Give one of "
+                        "them."});
+  if (p.confinement() != nullptr &&
+      p.confinement()->pressure > 0.02 * p.layer.young_modulus)
+    findings.push_back({{p.has("membrane") ? "Membrane/Pressure" : "Servo walls/Pressure",
+                         "Layer/Young modulus"},
                         "more than 2 % of the rock's Young's modulus, beyond the small "
                         "strains of joints. Give less, in Pa."});
   if (pulls && !p.is_specimen())
     findings.push_back(
         {{"Walls/Action", "Components"}, "grips pull a specimen, " + specimen + "."});
-  if (pulls && p.has("servo walls"))
+  if (pulls && p.confinement() != nullptr)
     findings.push_back({{"Walls/Action", "Components"},
-                        "servo walls press a specimen that platens shorten. Give press, "
-                        "or remove servo walls from 'Components'."});
+                        "servo walls and membrane press a specimen that platens shorten. "
+                        "Give press, or remove them from 'Components'."});
   const double free_length =
       p.layer_length() / p.grain_diameter() - 2. * p.walls.grip_layers;
   if (pulls && p.is_specimen() && free_length < 5.)
@@ -425,6 +431,13 @@ bool Parameters::has_contacts_from_start() const
   return has("layer") && layer.representation == "grains" &&
          (discrete::has_contact_beside(layer.law()) || has("fractures") ||
           (has("matrix") && matrix.interface == "frictionless"));
+}
+
+const ConfinementParameters *Parameters::confinement() const
+{
+  if (has("servo walls"))
+    return &servo_walls;
+  return has("membrane") ? &membrane : nullptr;
 }
 
 bool Parameters::is_specimen() const

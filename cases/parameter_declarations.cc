@@ -127,20 +127,41 @@ void declare(WallsParameters &walls, Declarations &entries)
   entries.leave();
 }
 
-void declare(ServoWallsParameters &servo, Declarations &entries)
+void declare_confinement(ConfinementParameters &confinement,
+                         const std::string &what,
+                         Declarations &entries)
 {
-  entries.enter("Servo walls");
-  entries.number("Pressure", servo.pressure,
-                 "Confinement that rigid frictionless walls keep on the sides of a "
-                 "specimen; it comes up on all four sides before shortening begins [Pa].",
+  entries.number("Pressure", confinement.pressure,
+                 "Confinement that " + what +
+                     " on the sides of a specimen; it comes up on all four sides before "
+                     "shortening begins [Pa].",
                  Number::above(0.));
-  entries.number("Gain", servo.gain,
-                 "beta, share of the error in the pressure that a step takes away [-].",
+  entries.number("Gain", confinement.gain,
+                 "beta, share of the error in a wall's pressure that a step takes away "
+                 "[-].",
                  Number::above(0.).below(1.));
-  entries.number("Ramp", servo.ramp,
+  entries.number("Ramp", confinement.ramp,
                  "Axial transits in which the pressure comes up; as many follow at rest "
                  "[-].",
                  Number::above(0.));
+}
+
+void declare(ServoWallsParameters &servo, Declarations &entries)
+{
+  entries.enter("Servo walls");
+  declare_confinement(servo, "rigid frictionless walls keep", entries);
+  entries.leave();
+}
+
+void declare(MembraneParameters &membrane, Declarations &entries)
+{
+  entries.enter("Membrane");
+  declare_confinement(membrane, "a flexible membrane puts", entries);
+  entries.number("Reach ratio", membrane.reach,
+                 "Radius over the mean grain diameter of the ball that cannot pass "
+                 "between two neighbours of the membrane; a smaller one follows notches "
+                 "further in [-].",
+                 Number::between(0.7, 5.));
   entries.leave();
 }
 
@@ -221,7 +242,7 @@ const std::vector<std::string> &all_components()
   static const std::vector<std::string> names = {
       "layer",       "matrix",      "foundation",
       "surface pressure", "gravity", "walls",
-      "servo walls", "fractures",   "damping",
+      "servo walls", "membrane", "fractures",   "damping",
       "measurement circles", "calibration"};
   return names;
 }
@@ -237,6 +258,7 @@ const std::vector<Section> &all_sections()
       {"Gravity", "component gravity"},
       {"Walls", "component walls"},
       {"Servo walls", "component servo walls"},
+      {"Membrane", "component membrane"},
       {"Fractures", "component fractures"},
       {"Damping", "component damping"},
       {"Calibration", "component calibration"},
@@ -265,7 +287,8 @@ void declare_parameters(Parameters &p,
   entries.list(
       "Components", p.components,
       "What exists in the scene, a list: layer, matrix, foundation, surface "
-      "pressure, gravity, walls, servo walls, fractures, damping, measurement circles; "
+      "pressure, gravity, walls, servo walls, membrane, fractures, damping, "
+      "measurement circles; "
       "calibration for 'antiform calibrate'. Only their sections are read.");
   for (const std::string &section : sections)
   {
@@ -288,6 +311,8 @@ void declare_parameters(Parameters &p,
       declare(p.walls, entries);
     else if (section == "Servo walls")
       declare(p.servo_walls, entries);
+    else if (section == "Membrane")
+      declare(p.membrane, entries);
     else if (section == "Fractures")
       declare(p.fractures, entries);
     else if (section == "Damping")

@@ -122,12 +122,21 @@ struct WallsParameters
   double grip_layers = 7.5;     ///< width of a grip over the mean grain diameter
 };
 
-/// Walls along the sides of a specimen that keep a pressure on it.
-struct ServoWallsParameters
+/// A pressure on the sides of a specimen, and on its ends before they shorten it.
+struct ConfinementParameters
 {
   double pressure = 10e6; ///< [Pa]
   double gain = 0.5;      ///< beta: share of the error that one step takes away
   double ramp = 100.;     ///< transits over which the pressure comes up on all sides
+};
+/// By rigid frictionless walls along the sides.
+struct ServoWallsParameters : ConfinementParameters
+{
+};
+/// By a flexible membrane around the specimen.
+struct MembraneParameters : ConfinementParameters
+{
+  double reach = 1.; ///< of the ball that finds the outer grains, over the mean diameter
 };
 
 /// Pre-existing fractures, by smooth joints.
@@ -226,6 +235,7 @@ struct Parameters
   GravityParameters gravity;
   WallsParameters walls;
   ServoWallsParameters servo_walls;
+  MembraneParameters membrane;
   FracturesParameters fractures;
   MeasurementCirclesParameters measurement_circles;
   DampingParameters damping;
@@ -238,6 +248,8 @@ struct Parameters
   bool has_unbonded_joints() const;
   /// Linear contacts act before anything has broken.
   bool has_contacts_from_start() const;
+  /// What confines the specimen; null: nothing.
+  const ConfinementParameters *confinement() const;
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.

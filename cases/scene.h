@@ -8,6 +8,7 @@
 #include "coupling/bridging_domain.h"
 #include "coupling/grain_components.h"
 #include "coupling/joining_components.h"
+#include "coupling/membrane_load.h"
 #include "coupling/mesh_components.h"
 #include "coupling/simulation.h"
 #include "coupling/specimen_components.h"
@@ -50,6 +51,7 @@ struct Scene
   // What loads the ends, one of them or none.
   coupling::Walls *wall_motion = nullptr;
   coupling::Grips *grips = nullptr;
+  coupling::MembraneLoad *membrane = nullptr;
 
   coupling::ConstrainedForces *constrained = nullptr;
   bool breakage_components = false; ///< friction, contacts and search have joined

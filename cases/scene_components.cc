@@ -30,6 +30,7 @@ enum Rank
   rank_smooth_joints = 28,
   rank_contacts = 30,
   rank_walls = 40,
+  rank_membrane = 45, // before the grains move on
   rank_loads = 60,
   rank_base = 90,
   rank_constrained = 95,
@@ -152,10 +153,23 @@ double ramp_up(const double t, const double ramp)
   return t >= ramp ? 1. : 0.5 * (1. - std::cos(M_PI * t / ramp));
 }
 
-/// Side walls, and until the pressure is on the platens too, follow it.
-void add_servo_walls(Scene &scene, const double fastest)
+/// Does a platen bear on this grain?
+bool is_at_platen(const Scene &scene, const std::int32_t grain)
 {
-  const ServoWallsParameters &servo = scene.parameters.servo_walls;
+  const discrete::Grains &grains = scene.grains->state.grains;
+  const double near = grains.radius[grain] + 0.3 * scene.geometry.diameter();
+  return std::any_of(scene.walls.begin(), scene.walls.end(),
+                     [&](const discrete::Wall &wall)
+                     {
+                       const Vec2 from = grains.position(grain) - wall.point;
+                       return dot(from, wall.normal) - wall.displacement < near;
+                     });
+}
+
+/// Side walls or membrane, and until the pressure is on the platens too, these follow it.
+void add_confinement(Scene &scene, const double fastest)
+{
+  const ConfinementParameters servo = *scene.parameters.confinement();
   const double ramp = servo.ramp * scene.transit_time;
   const auto speed_on = [servo, ramp, fastest](const double area)
   {
@@ -166,6 +180,18 @@ void add_servo_walls(Scene &scene, const double fastest)
     };
   };
   scene.wall_motion->preload({2. * ramp, speed_on(scene.geometry.thickness())});
+  if (scene.parameters.has("membrane"))
+  {
+    scene.membrane = &scene.simulation->add(
+        std::make_unique<MembraneLoad>(
+            scene.grains->state,
+            scene.parameters.membrane.reach * scene.geometry.diameter(),
+            [servo, ramp](const double t) { return servo.pressure * ramp_up(t, ramp); },
+            [&scene](const std::int32_t grain) { return is_at_platen(scene, grain); }),
+        {Stage::forces, Stage::drift}, rank_membrane, "membrane",
+        reason_for(scene.parameters, "membrane"));
+    return;
+  }
   scene.simulation->add(std::make_unique<ServoWalls>(scene.side_walls,
                                                      scene.grains->state,
                                                      speed_on(scene.geometry.length())),
@@ -212,13 +238,13 @@ void add_walls(Scene &scene)
       std::make_unique<Walls>(scene.walls, grains, scene.mesh ? &*scene.mesh : nullptr,
                               scene.bridging.get(), speed),
       {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls", reason);
-  if (p.has("servo walls"))
+  if (const ConfinementParameters *const confinement = p.confinement())
   {
     // Ten times what the pressure's own strain needs in its ramp: room to follow breaks.
-    const double strain = p.servo_walls.pressure / p.layer.young_modulus;
-    add_servo_walls(scene,
+    const double strain = confinement->pressure / p.layer.young_modulus;
+    add_confinement(scene,
                     std::max(20. * full, 10. * strain * scene.geometry.length() /
-                                             (p.servo_walls.ramp * scene.transit_time)));
+                                             (confinement->ramp * scene.transit_time)));
   }
 }
 } // namespace

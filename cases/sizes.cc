@@ -77,13 +77,14 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
     // Rocks break near 2.5e-3 in compression, at a tenth of that in tension, and under
     // confinement go on well beyond.
     const double usual = p.walls.action == "pull" ? 2.5e-4
-                         : p.has("servo walls") ? std::min(5e-3, p.run.longest_shortening)
-                                                : 2.5e-3;
+                         : p.confinement() != nullptr
+                             ? std::min(5e-3, p.run.longest_shortening)
+                             : 2.5e-3;
     const double millistrain =
         1e3 * (p.run.end_shortening > 0. ? p.run.end_shortening : usual);
     sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
-    if (p.has("servo walls"))
-      sizes.steps += 2. * transit * p.servo_walls.ramp;
+    if (p.confinement() != nullptr)
+      sizes.steps += 2. * transit * p.confinement()->ramp;
     sizes.core_seconds = sizes.steps * (sizes.grains / grain_steps_per_second +
                                         sizes.dofs / dof_steps_per_second);
   }

@@ -115,7 +115,7 @@ double SpecimenRecord::elongation(const Scene &scene,
 
 std::vector<double> SpecimenRecord::measure(const Scene &scene) const
 {
-  double pressure = 0.;
+  double pressure = scene.membrane != nullptr ? scene.membrane->pressure() : 0.;
   for (const discrete::Wall &wall : scene.side_walls)
     pressure += 0.5 * wall.reaction / scene.geometry.length();
   return {elongation(scene, axial_, true), elongation(scene, lateral_, false), pressure};
@@ -132,9 +132,9 @@ void SpecimenRecord::keep(const Scene &scene,
     lateral_strain_.clear();
     stress_.clear();
   }
-  if (!scene.side_walls.empty() && stress_.empty())
+  if (scene.parameters.confinement() != nullptr && stress_.empty())
   {
-    const double wanted = scene.parameters.servo_walls.pressure;
+    const double wanted = scene.parameters.confinement()->pressure;
     off_pressure_ =
         std::max(std::abs(values[2] / wanted - 1.), std::abs(stress / wanted - 1.));
   }
@@ -155,13 +155,14 @@ void SpecimenRecord::fill(const Scene &scene,
                           Summary &summary) const
 {
   auto &results = summary.results;
+  const ConfinementParameters *const confinement = scene.parameters.confinement();
   if (scene.grips == nullptr)
     results["confining_pressure"] = {
-        scene.side_walls.empty() ? 0. : scene.parameters.servo_walls.pressure, "Pa"};
-  if (!scene.side_walls.empty() && off_pressure_ > 0.02)
+        confinement == nullptr ? 0. : confinement->pressure, "Pa"};
+  if (confinement != nullptr && off_pressure_ > 0.02)
     summary.warnings.push_back(
         "shortening began with the confinement " + std::to_string(100. * off_pressure_) +
-        " % off its value; raise 'Servo walls / Ramp', or give less pressure");
+        " % off its value; raise its 'Ramp', or give less pressure");
   results["crack_density"] = {crack_density(scene), "-"};
   const std::size_t peak = peak_sample(peak_stress);
   if (peak >= stress_.size() || peak < 3)

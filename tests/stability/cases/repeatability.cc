@@ -26,7 +26,7 @@ TEST(Repeatability, ThreadsDoNotChangeABit)
 TEST(Repeatability, ThreadsDoNotChangeABitOfALargerScene)
 {
   const TemporaryFolder folder;
-  for (const int n_threads : {1, 2})
+  for (const int n_threads : {1, 2, 4, 16})
   {
     const std::string directory = folder.path(std::to_string(n_threads));
     const Outcome outcome =
@@ -36,7 +36,8 @@ TEST(Repeatability, ThreadsDoNotChangeABitOfALargerScene)
     ASSERT_EQ(outcome.status, 0) << outcome.output;
   }
   ASSERT_GT(summary_of(folder.path("1")).at("sizes").at("grains"), 2000);
-  expect_same_run(folder.path("1"), folder.path("2"));
+  for (const char *n_threads : {"2", "4", "16"})
+    expect_same_run(folder.path("1"), folder.path(n_threads));
 }
 
 TEST(Repeatability, DeckPrmRepeatsTheRun)

@@ -116,10 +116,10 @@ std::vector<Crack> by_place(std::vector<Crack> cracks)
 }
 } // namespace
 
-TEST(Determinism, OneAndTwoThreadsGiveTheSameBits)
+namespace
 {
-  static_assert(48 * 48 >= threads_from_grains, "the sample is too small for threads");
-  const ExplicitRun one = breaking_run(1, 600), two = breaking_run(2, 600);
+void expect_same_bits(const ExplicitRun &one, const ExplicitRun &two)
+{
   const Grains &a = one.sample.grains, &b = two.sample.grains;
   EXPECT_TRUE(same_bits(a.displacement_x, b.displacement_x));
   EXPECT_TRUE(same_bits(a.displacement_y, b.displacement_y));
@@ -145,6 +145,18 @@ TEST(Determinism, OneAndTwoThreadsGiveTheSameBits)
   EXPECT_EQ(e.strain, f.strain);
   EXPECT_EQ(e.slip, f.slip);
   EXPECT_EQ(e.fracture, f.fracture);
+}
+} // namespace
+
+TEST(Determinism, AnyNumberOfThreadsGivesTheSameBits)
+{
+  static_assert(48 * 48 >= threads_from_grains, "the sample is too small for threads");
+  const ExplicitRun one = breaking_run(1, 600);
+  for (const int n_threads : {2, 4, 16})
+  {
+    SCOPED_TRACE(n_threads);
+    expect_same_bits(one, breaking_run(n_threads, 600));
+  }
 }
 
 TEST(Numbering, IntactForcesDoNotDependOnIt)

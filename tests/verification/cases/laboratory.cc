@@ -58,6 +58,36 @@ TEST(Laboratory, ElasticModuliDoNotDependOnHowTheSpecimenIsLoaded)
   EXPECT_LT(ratio, 1. / 3.);
 }
 
+TEST(Laboratory, AMembraneConfinesAsSideWallsDoUntilTheRockBulges)
+{
+  const TemporaryFolder folder;
+  const nlohmann::json walls =
+      run_specimen("biaxial", elastic_and({"Run/End shortening=3e-4"}),
+                   folder.path("walls"));
+  const nlohmann::json membrane =
+      run_specimen("membrane", elastic_and({"Run/End shortening=3e-4"}),
+                   folder.path("membrane"));
+  // The same rock under the same stress. What differs is a rough side against a straight
+  // one, of the grains beside it: less than their share of a sixteenth.
+  EXPECT_NEAR(result(membrane, "young_modulus") / result(walls, "young_modulus"), 1.,
+              0.02);
+  EXPECT_EQ(result(membrane, "confining_pressure"), 10e6);
+  EXPECT_TRUE(membrane.at("warnings").empty()); // the platens had the pressure in time
+  EXPECT_EQ(membrane.at("effects").at("membrane").at("calls"), membrane.at("steps"));
+  EXPECT_EQ(walls.at("effects").at("membrane").at("calls"), 0);
+  EXPECT_LT(membrane.at("energy").at("closure_error").get<double>(), 1e-4);
+
+  // Broken, it gives way to the side, which rigid walls do not let it.
+  const std::vector<std::string> to_the_end{"Walls/Transits per millistrain=75",
+                                            "Run/End shortening=6e-3",
+                                            "Run/Stress ratio of peak=0"};
+  const nlohmann::json held = run_specimen("biaxial", to_the_end, folder.path("held"));
+  const nlohmann::json free = run_specimen("membrane", to_the_end, folder.path("free"));
+  EXPECT_LT(result(free, "peak_stress"), result(held, "peak_stress"));
+  EXPECT_GT(result(free, "peak_stress"), 0.75 * result(held, "peak_stress"));
+  EXPECT_LT(free.at("energy").at("closure_error").get<double>(), 1e-3);
+}
+
 TEST(Laboratory, SideWallsKeepTheirPressure)
 {
   const TemporaryFolder folder;
