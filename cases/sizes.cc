@@ -11,8 +11,8 @@ namespace
 {
 // Speed of one core, from tests/benchmark and whole runs; predictions hold within a
 // factor of two or so on a machine of the same years.
-constexpr double grain_steps_per_second = 6e6;
-constexpr double dof_steps_per_second = 40e6;
+constexpr double grain_steps_per_second = 9e6;
+constexpr double dof_steps_per_second = 18e6;
 
 // Grains per d^2: solid fraction 0.845 over pi/4 <d^2>/<d>^2 (radius ratio 1.66: 1.02).
 constexpr double grains_per_square_diameter = 0.845 / (0.25 * M_PI * 1.02);
