@@ -1,6 +1,7 @@
 #include "cases/inertia.h"
 
 #include "cases/scene.h"
+#include "cases/scene_components.h"
 #include "continuum/errors.h"
 
 #include <algorithm>
@@ -31,6 +32,24 @@ void add_contact_stiffness(const Scene &scene, StiffnessSums &sums)
   }
 }
 
+/// Springs under the base grains [N/m]; what stands on a rigid base is held, not sprung.
+std::vector<double> base_springs(const Scene &scene)
+{
+  std::vector<double> springs(scene.grains->state.grains.size(), 0.);
+  for (const coupling::GrainBase::Support &support : base_supports(scene))
+    if (std::isfinite(support.stiffness))
+      springs[support.grain] += support.stiffness;
+  return springs;
+}
+
+/// By what damping shortens the stable step. Each dof is pulled by r + d with
+/// |d| <= alpha |r|: as if it were stiffer by at most 1 + alpha. It is where it vibrates
+/// from step to step, at the bound.
+double damping_factor(const Parameters &p)
+{
+  return p.has("damping") ? 1. / std::sqrt(1. + p.damping.coefficient) : 1.;
+}
+
 std::vector<discrete::PairStiffness> fracture_springs(const Scene &scene)
 {
   if (!scene.grains->smooth)
@@ -47,6 +66,9 @@ StiffnessSums grain_stiffness(const Scene &scene)
     for (const discrete::Wall &wall : *walls)
       for (const discrete::WallContact &contact : wall.contacts)
         sums.translation[contact.grain] += contact.stiffness;
+  const std::vector<double> base = base_springs(scene);
+  for (std::size_t i = 0; i < base.size(); ++i)
+    sums.translation[i] += base[i];
   add_contact_stiffness(scene, sums);
   for (const discrete::PairStiffness &pair : fracture_springs(scene))
     for (const auto &[i, lever] :
@@ -60,11 +82,12 @@ StiffnessSums grain_stiffness(const Scene &scene)
 
 namespace
 {
-/// Bound for the grains at their present masses, with the walls as springs to the ground.
+/// Bound for the grains at their present masses, with walls and base as springs to the
+/// ground; without damping.
 double grain_step(const Scene &scene)
 {
   const coupling::GrainState &state = scene.grains->state;
-  std::vector<double> ground(state.grains.size(), 0.);
+  std::vector<double> ground = base_springs(scene);
   for (const std::vector<discrete::Wall> *walls : {&scene.walls, &scene.side_walls})
     for (const discrete::Wall &wall : *walls)
       for (const discrete::WallContact &contact : wall.contacts)
@@ -96,7 +119,7 @@ double after_search(Scene &scene)
       scene.bridging->factorise(all, scene.mesh->inverse_mass);
   }
   const coupling::Clock &clock = scene.simulation->clock();
-  const double limit = grain_step(scene);
+  const double limit = damping_factor(scene.parameters) * grain_step(scene);
   if (clock.dt > limit)
     throw NumericalError("contacts",
                          "grains that have come into contact have made the step "
@@ -149,7 +172,7 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
                                           scene.solid->dof_handler().get_communicator());
     step = std::min(step, 2. / std::sqrt(largest));
   }
-  return p.run.safety * step;
+  return p.run.safety * damping_factor(p) * step;
 }
 
 double layer_transit(const Scene &scene)

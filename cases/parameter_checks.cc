@@ -160,8 +160,25 @@ void check_bonds(const Parameters &p, Findings &findings)
                         "'Layer/Bond model' = 'flat joint'."});
 }
 
+/// The modulus of a disk packing is that of its bonds within a factor of two or so.
+void check_modulus(const Parameters &p, Findings &findings)
+{
+  constexpr double factor = 20.;
+  const double rock = p.layer.young_modulus;
+  const double bonds = discrete::joint_modulus(p.layer.law());
+  if (!(bonds < factor * rock && rock < factor * bonds))
+    findings.push_back(
+        {{"Layer/Young modulus",
+          p.layer.bond_model == "flat joint" ? "Layer/Flat joint/Effective modulus"
+                                             : "Layer/Bond model"},
+         "the rock's modulus is " + short_text(rock) + " Pa and that of its bonds " +
+             short_text(bonds) + " Pa, which cannot belong together. Give both in Pa."});
+}
+
 void check_layer(const Parameters &p, Findings &findings)
 {
+  if (p.layer.representation == "grains")
+    check_modulus(p, findings);
   if (p.layer.representation == "grains")
     check_bonds(p, findings);
   if (p.layer.representation == "grains" && p.layer_length() < p.layer.thickness)

@@ -188,7 +188,7 @@ void declare(RunParameters &run, Declarations &entries)
       "quasi-static (rates do not matter), dynamic (they do), static (implicit "
       "solves).",
       "quasi-static|dynamic|static");
-  entries.number("Step safety", run.safety, "Step over the rigorous stable step [-].",
+  entries.number("Step safety", run.safety, "Step over the rigorous stable step, that of damped grains and nodes [-].",
                  Number::above(0.).below(1.));
   entries.number("End shortening", run.end_shortening,
                  "Shortening (or extension) at which the run ends, whatever the stress "

@@ -176,7 +176,7 @@ struct DampingParameters
 struct RunParameters
 {
   std::string driver = "quasi-static"; ///< quasi-static | dynamic | static
-  double safety = 0.8;                 ///< step over the rigorous stable step
+  double safety = 0.9;                 ///< step over the rigorous stable step
   double end_shortening = 0.;          ///< 0: by the peak
   double strain_multiple_of_peak = 2.; ///< end at this multiple of the strain at the peak
   double stress_ratio_of_peak =

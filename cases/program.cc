@@ -405,7 +405,11 @@ int run(const Parameters &parameters,
   {
     return stepped.fail(error.what());
   }
-  catch (const discrete::PackingError &error)
+  catch (const InputError &)
+  {
+    throw; // what only the packing could tell of the deck
+  }
+  catch (const std::exception &error)
   {
     return stepped.fail(error.what());
   }

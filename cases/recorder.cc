@@ -431,6 +431,10 @@ void Recorder::fill(Summary &summary) const
       {"damping", energies_.damping},
       {"fracture", energies_.fracture},
       {"closure_error", largest_terms_ > 0. ? largest_gap_ / largest_terms_ : 0.}};
+  if (const double closure = summary.energy.at("closure_error"); !(closure < 1e-3))
+    summary.warnings.push_back("the energy ledger is open by " + std::to_string(closure) +
+                               " of its terms, 0.001 is the limit: lower 'Run/Step "
+                               "safety', or load more slowly");
   for (const std::string &warning : mesh_watch_.warnings())
     summary.warnings.push_back(warning);
 }

@@ -56,6 +56,20 @@ void add_contacts(Scene &scene)
 }
 } // namespace
 
+std::vector<GrainBase::Support> base_supports(const Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  std::vector<GrainBase::Support> supports;
+  if (!p.has("matrix") || p.matrix.representation != "grains")
+    return supports;
+  const double spring = p.has("foundation") ? p.foundation.stiffness_ratio *
+                                                  p.matrix_modulus() / p.layer.thickness
+                                            : std::numeric_limits<double>::infinity();
+  for (const auto &[grain, width] : base_grains(*scene.grains, scene.geometry))
+    supports.push_back({grain, spring * width});
+  return supports;
+}
+
 void add_grain_components(Scene &scene)
 {
   const Parameters &p = scene.parameters;
@@ -76,14 +90,9 @@ void add_grain_components(Scene &scene)
         .on_first_crack = bonds.on_first_crack;
   if (p.has_contacts_from_start())
     add_contacts(scene);
-  if (p.has("matrix") && p.matrix.representation == "grains")
+  if (const std::vector<GrainBase::Support> supports = base_supports(scene);
+      !supports.empty())
   {
-    std::vector<GrainBase::Support> supports;
-    const double spring = p.has("foundation") ? p.foundation.stiffness_ratio *
-                                                    p.matrix_modulus() / p.layer.thickness
-                                              : std::numeric_limits<double>::infinity();
-    for (const auto &[grain, width] : base_grains(*scene.grains, scene.geometry))
-      supports.push_back({grain, spring * width});
     const std::string name = p.has("foundation") ? "foundation" : "base";
     const bool fixed = !p.has("foundation") && p.matrix.base == "fixed";
     simulation.add(std::make_unique<GrainBase>(state, supports, fixed), {Stage::forces},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/grain_components.h"
 #include "coupling/mesh_components.h"
 
 #include <memory>
@@ -7,6 +8,10 @@
 namespace antiform::cases
 {
 struct Scene;
+
+/// What holds the grains of the base: springs of the foundation, or a rigid base
+/// (infinity). Empty where the base is no grains.
+std::vector<coupling::GrainBase::Support> base_supports(const Scene &scene);
 
 /// Bonds, contacts and supports of the grains.
 void add_grain_components(Scene &scene);
