@@ -12,15 +12,21 @@ using namespace antiform::testing;
 
 namespace
 {
-/// A strip of Q2 cells whose ends may turn and slide along x, on springs at its lower
-/// face.
-class PinnedStrip
+enum class Ends
+{
+  pinned, ///< may turn and slide along x
+  free    ///< may move across too
+};
+
+/// A strip of Q2 cells on springs at its lower face.
+class SpringStrip
 {
 public:
-  PinnedStrip(const theory::Layer &layer,
-              const double length,
-              const unsigned int n_columns,
-              const double foundation)
+  SpringStrip(const theory::Layer &layer,
+        const double length,
+        const unsigned int n_columns,
+        const double foundation,
+        const Ends ends = Ends::pinned)
       : layer_(layer)
       , length_(length)
       , triangulation_(MPI_COMM_WORLD)
@@ -36,8 +42,11 @@ public:
     geometric_.add(1., solid_.geometric_stiffness(unit));
 
     const auto zero = [](const Point<2> &) { return 0.; };
-    prescribe(solid_, boundary::left, 1, zero, values_);
-    prescribe(solid_, boundary::right, 1, zero, values_);
+    if (ends == Ends::pinned)
+    {
+      prescribe(solid_, boundary::left, 1, zero, values_);
+      prescribe(solid_, boundary::right, 1, zero, values_);
+    }
     hold_node(solid_, Point<2>(0., 0.), 0, values_);
   }
 
@@ -50,19 +59,17 @@ public:
                           [&](const Point<2> &p, const auto &) {
                             return dealii::Tensor<1, 2>({0., std::sin(k * p[0])});
                           });
-    dealii::TrilinosWrappers::SparseMatrix matrix;
-    matrix.copy_from(solid_.stiffness());
-    matrix.add(N, geometric_);
-    const auto u = solve_direct(solid_, matrix, values_, load);
-    double amplitude = 0.;
-    for (const auto dof : solid_.locally_owned())
-    {
-      const auto p = solid_.support_point(dof);
-      if (solid_.component(dof) == 1 && std::abs(p[1]) < 1e-9 &&
-          std::abs(p[0] - 0.5 * length_ / m) < 1e-9)
-        amplitude = u(dof);
-    }
-    return dealii::Utilities::MPI::sum(amplitude, MPI_COMM_WORLD);
+    return axis_deflection(N, load, 0.5 * length_ / m);
+  }
+
+  /// Of the left end under a unit force across it and axial force N [m].
+  double end_deflection(const double N) const
+  {
+    const auto load = boundary_traction(
+        solid_, {boundary::left}, [&](const Point<2> &, const auto &) {
+          return dealii::Tensor<1, 2>({0., 1. / layer_.thickness});
+        });
+    return axis_deflection(N, load, 0.);
   }
 
   /// Where the line through 1/W at two forces meets 0 [N/m].
@@ -73,6 +80,24 @@ public:
   }
 
 private:
+  template <class Load>
+  double axis_deflection(const double N, const Load &load, const double x) const
+  {
+    dealii::TrilinosWrappers::SparseMatrix matrix;
+    matrix.copy_from(solid_.stiffness());
+    matrix.add(N, geometric_);
+    const auto u = solve_direct(solid_, matrix, values_, load);
+    double amplitude = 0.;
+    for (const auto dof : solid_.locally_owned())
+    {
+      const auto p = solid_.support_point(dof);
+      if (solid_.component(dof) == 1 && std::abs(p[1]) < 1e-9 &&
+          std::abs(p[0] - x) < 1e-9)
+        amplitude = u(dof);
+    }
+    return dealii::Utilities::MPI::sum(amplitude, MPI_COMM_WORLD);
+  }
+
   const Triangulation &mesh(const unsigned int n_columns)
   {
     make_rectangle(triangulation_, length_, layer_.thickness, n_columns, 2);
@@ -104,7 +129,7 @@ void expect_winkler_mode(const double length,
   // Shear lowers D k^2 by 0.2 (k h)^2, the turning sections by (k h)^2 / 12 (nu = 0):
   // together 3e-4 for this thickness and the fifth mode.
   const double thickness = length / 500.;
-  const PinnedStrip strip(unit_layer(thickness), length, n_columns, foundation);
+  const SpringStrip strip(unit_layer(thickness), length, n_columns, foundation);
   const double N = strip.buckling_force(mode, 0.3 * force, 0.6 * force);
   EXPECT_NEAR(N, force, 1e-3 * force);
   for (const unsigned int other : {mode - 1, mode + 1})
@@ -116,7 +141,7 @@ TEST(Buckling, PinnedColumnReachesEulersForce)
 {
   const double length = 20.;
   const theory::Layer layer{20e9, 0.25, 1.};
-  const PinnedStrip column(layer, length, 20, 0.);
+  const SpringStrip column(layer, length, 20, 0.);
   const double k = M_PI / length;
   const double euler = layer.bending_stiffness() * k * k;
 
@@ -145,6 +170,25 @@ TEST(Buckling, StripOnStiffSpringsTakesTheFifthMode)
 TEST(Buckling, LongStripOnSpringsTakesTheFifthMode)
 {
   expect_winkler_mode(3., 1e3, 5, 63.8912);
+}
+
+TEST(Buckling, LongStripWithFreeEndsBucklesAtHalfTheForce)
+{
+  // D = 1, k_w = 4: a half-infinite beam under a force P at its free end deflects there by
+  //   W = (P / k_w) 4 l^2 b / (3 b^2 - a^2),  l^4 = k_w / 4 D,
+  //   a^2 = l^2 + N / 4 D,  b^2 = l^2 - N / 4 D
+  // (Hetenyi 1946): b / W falls linearly with N and is 0 at N = sqrt(k_w D).
+  const double foundation = 4., critical = 2., thickness = 0.02, length = 14.;
+  const SpringStrip strip(unit_layer(thickness), length, 280, foundation, Ends::free);
+  const auto b = [](const double N) { return std::sqrt(1. - 0.25 * N); };
+  const auto ordinate = [&](const double N) { return b(N) / strip.end_deflection(N); };
+  const double N1 = 0.3 * critical, N2 = 0.6 * critical;
+  const double y1 = ordinate(N1), y2 = ordinate(N2);
+  const double N = N1 + y1 * (N2 - N1) / (y1 - y2);
+  EXPECT_NEAR(N, critical, 1e-3 * critical);
+  EXPECT_NEAR(N, 0.5 * theory::winkler_critical_force(1., foundation), 1e-3 * critical);
+  // What the beam does before: 4 l^2 b / (k_w (2 - N)) = b / (2 - N).
+  EXPECT_NEAR(strip.end_deflection(N1), b(N1) / (2. - N1), 2e-3 * b(N1) / (2. - N1));
 }
 
 TEST(Buckling, ClosedFormGivesTheModesOnSprings)
