@@ -38,18 +38,29 @@ void GrainMotion::visit_state(StateArchive &archive)
   archive.array("grains/inverse_inertia", g.inverse_inertia);
 }
 
+namespace
+{
+/// Cracks of this step join those of the run; tells of the first.
+void add_cracks(const std::vector<Crack> &found,
+                GrainState &state,
+                const std::function<void()> &on_first_crack)
+{
+  if (found.empty())
+    return;
+  const bool first = state.cracks.empty();
+  state.cracks.insert(state.cracks.end(), found.begin(), found.end());
+  if (first && on_first_crack)
+    on_first_crack();
+}
+} // namespace
+
 void Bonds::run(const Stage, const Clock &clock)
 {
   std::vector<Crack> found;
   const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
   evaluate_bonds(state_.grains, state_.joints, now, state_.breaking ? &found : nullptr,
                  clock.sample_due);
-  if (found.empty())
-    return;
-  const bool first = state_.cracks.empty();
-  state_.cracks.insert(state_.cracks.end(), found.begin(), found.end());
-  if (first && on_first_crack)
-    on_first_crack();
+  add_cracks(found, state_, on_first_crack);
 }
 
 void Bonds::add_energies(Energies &energies) const
@@ -229,12 +240,7 @@ void SmoothJointForces::run(const Stage, const Clock &clock)
   const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
   add_smooth_joint_forces(state_.grains, joints_, now,
                           state_.breaking ? &found : nullptr);
-  if (found.empty())
-    return;
-  const bool first = state_.cracks.empty();
-  state_.cracks.insert(state_.cracks.end(), found.begin(), found.end());
-  if (first && on_first_crack)
-    on_first_crack();
+  add_cracks(found, state_, on_first_crack);
 }
 
 void SmoothJointForces::add_energies(Energies &energies) const

@@ -156,17 +156,13 @@ double released_energy(const Grains &grains, const Joints &joints)
 {
   double energy = 0.;
   for (const auto &[contact, record] : joints.released)
-    for (const JointGroup &group : joints.groups)
-      if (const auto *const law = std::get_if<ContactBond>(&group.law))
-      {
-        const LinearContact contact_law = contact_of(*law);
-        energy +=
-            strain_energy(contact,
-                          normal_stiffness(contact_law, grains.radius[contact.first],
-                                           grains.radius[contact.second]),
-                          contact_law.stiffness_ratio);
-        break;
-      }
+  {
+    const JointGroup &group = joints.groups[joints.damaged.group[record]];
+    const LinearContact law = contact_of(std::get<ContactBond>(group.law));
+    const double k_n = normal_stiffness(law, grains.radius[contact.first],
+                                        grains.radius[contact.second]);
+    energy += strain_energy(contact, k_n, law.stiffness_ratio);
+  }
   return energy;
 }
 } // namespace antiform::discrete
