@@ -1,5 +1,7 @@
 #pragma once
 
+#include "coupling/state_image.h"
+
 #include <mpi.h>
 
 #include <cstddef>
@@ -34,10 +36,6 @@ public:
   void value(const std::string &name, double &x);
   void value(const std::string &name, std::int64_t &x);
 };
-
-/// Contents of an entry; the alternatives' order is the code of their type in the file.
-using StateEntry =
-    std::variant<std::vector<double>, std::vector<std::int64_t>, std::string>;
 
 /// Collects arrays and writes them to an HDF5 file under a temporary name, with a
 /// checksum over all contents, flushed to disk and renamed into place by commit(). A kill
@@ -96,7 +94,4 @@ private:
   std::map<std::string, StateEntry> entries_;
   std::map<std::string, bool> is_read_;
 };
-
-/// CRC-64/XZ (ECMA-182 polynomial, reflected) of @p n bytes: the checksum of state files.
-std::uint64_t crc64(const void *bytes, std::size_t n);
 } // namespace antiform::coupling
