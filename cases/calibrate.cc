@@ -1,6 +1,8 @@
 #include "cases/calibrate.h"
 
+#include "cases/directory_lock.h"
 #include "cases/interrupt.h"
+#include "cases/output_directory.h"
 #include "cases/run_log.h"
 #include "cases/sizes.h"
 #include "cases/trial_pool.h"
@@ -9,16 +11,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <ctime>
-#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
-#include <sys/file.h>
 #include <thread>
 #include <unistd.h>
 
@@ -56,6 +54,7 @@ void prepare(RunOptions &options)
   if (error)
     throw InputError({begin + "cannot be created (" + error.message() +
                       "). Give one that can be written to with -o DIR."});
+  prove_writable(options.output);
   for (const char *name : {"state.h5", "history.csv", "summary.json"})
     if (fs::exists(directory / name, error))
       throw InputError({begin + "holds another run (" + name +
@@ -66,33 +65,6 @@ void prepare(RunOptions &options)
                       "--resume (finished trials are not run again), give another "
                       "directory with -o DIR, or remove this one."});
 }
-
-/// Held while a calibration works in a directory, by its trials too.
-class DirectoryLock
-{
-public:
-  explicit DirectoryLock(const std::string &directory)
-      : file_(open((directory + "/lock").c_str(), O_RDWR | O_CREAT, 0644))
-  {
-    if (file_ < 0)
-      throw InputError({"output directory '" + directory + "': cannot be written to (" +
-                        std::strerror(errno) +
-                        "). Change its permissions, or give another one with -o DIR."});
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0)
-    {
-      close(file_);
-      throw InputError({"output directory '" + directory +
-                        "': a calibration, or a trial that one has left, is at work "
-                        "there. Wait for its end, or give another one with -o DIR."});
-    }
-  }
-  DirectoryLock(const DirectoryLock &) = delete;
-  DirectoryLock &operator=(const DirectoryLock &) = delete;
-  ~DirectoryLock() { close(file_); }
-
-private:
-  int file_;
-};
 
 Json to_json(const MicroParameters &micro)
 {
@@ -340,7 +312,8 @@ int calibrate(const Parameters &p, const RunOptions &given)
 {
   RunOptions options = given;
   prepare(options);
-  const DirectoryLock lock(options.output);
+  const DirectoryLock lock(options.output, "a calibration, or a trial that one has left,",
+                           DirectoryLock::Children::hold);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&]
   {

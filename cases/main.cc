@@ -47,14 +47,15 @@ int run_deck(RunOptions options, MPI_Comm communicator)
            [&] { parameters = read_deck(options.deck, options.overrides); });
   demand_calibration(parameters, false);
   demand_one_rank_of_grains(parameters, communicator); // the same on all of them
+  OutputDirectory directory; // of the first rank
   together(communicator,
            [&]
            {
              if (!is_first)
                return;
-             const std::string message = prepare_output_directory(options);
-             if (!message.empty())
-               std::cout << message << std::endl;
+             directory = prepare_output_directory(options);
+             if (!directory.message.empty())
+               std::cout << directory.message << std::endl;
            });
   options.output = ranks::broadcast(communicator, options.output, 0);
   options.resume = ranks::broadcast(communicator, options.resume, 0);

@@ -20,19 +20,6 @@ std::string default_output(const std::string &deck)
   return (ends_in_it ? deck.substr(0, deck.size() - extension.size()) : deck) + "-output";
 }
 
-/// Permission bits say little (root, read-only mounts, full quotas): write and see.
-void prove_writable(const fs::path &directory)
-{
-  std::string name = (directory / ".antiform-XXXXXX").string();
-  const int file = mkstemp(name.data());
-  if (file < 0)
-    throw InputError({"output directory '" + directory.string() +
-                      "': cannot be written to (" + std::strerror(errno) +
-                      "). Change its permissions, or give another one with -o DIR."});
-  close(file);
-  unlink(name.c_str());
-}
-
 /// What stands where the run will write: a folder for a file, or the reverse.
 void find_obstacles(const fs::path &directory)
 {
@@ -53,13 +40,25 @@ void find_obstacles(const fs::path &directory)
       !fs::is_directory(directory / "fields", error))
     refuse("fields", "is not a folder, and the run writes into one of that name");
   else if (fs::exists(directory / "fields", error))
-    prove_writable(directory / "fields");
+    prove_writable((directory / "fields").string());
   if (!problems.empty())
     throw InputError(problems);
 }
 } // namespace
 
-std::string prepare_output_directory(RunOptions &options)
+void prove_writable(const std::string &directory)
+{
+  std::string name = directory + "/.antiform-XXXXXX";
+  const int file = mkstemp(name.data());
+  if (file < 0)
+    throw InputError({"output directory '" + directory +
+                      "': cannot be written to (" + std::strerror(errno) +
+                      "). Change its permissions, or give another one with -o DIR."});
+  close(file);
+  unlink(name.c_str());
+}
+
+OutputDirectory prepare_output_directory(RunOptions &options)
 {
   if (options.output.empty())
     options.output = default_output(options.deck);
@@ -74,6 +73,12 @@ std::string prepare_output_directory(RunOptions &options)
     throw InputError({"output directory '" + options.output + "': cannot be created (" +
                       error.message() +
                       "). Give one that can be written to with -o DIR."});
+  OutputDirectory result;
+  result.lock = std::make_unique<DirectoryLock>(options.output, "another run",
+                                                DirectoryLock::Children::let_go);
+  if (!result.lock->is_held())
+    result.message = "The file system of '" + options.output +
+                     "' knows no locks: see that no second run writes there.";
   // deck.prm and a summary alone are of a run that failed before its first step.
   const bool has_state = fs::exists(directory / "state.h5", error);
   if (!has_state && fs::exists(directory / "history.csv", error))
@@ -84,14 +89,16 @@ std::string prepare_output_directory(RunOptions &options)
     throw InputError({"output directory '" + options.output +
                       "': holds another run (state.h5). Continue that run with --resume, "
                       "give another directory with -o DIR, or remove this one."});
-  prove_writable(directory);
+  prove_writable(options.output);
   find_obstacles(directory);
 
   if (options.resume && !has_state)
   {
     options.resume = false;
-    return "There is no state.h5 in '" + options.output + "': the run starts afresh.";
+    result.message += (result.message.empty() ? "" : "\n") +
+                      ("There is no state.h5 in '" + options.output) +
+                      "': the run starts afresh.";
   }
-  return "";
+  return result;
 }
 } // namespace antiform::cases

@@ -59,14 +59,15 @@ TEST(OutputDirectory, ResumesWhereThereIsAStateAndElseSaysThatItStartsAfresh)
   const Scratch scratch;
   scratch.write("with/state.h5", "state");
   RunOptions with = options_for(scratch.path("with"), true);
-  EXPECT_EQ(prepare_output_directory(with), "");
+  EXPECT_EQ(prepare_output_directory(with).message, "");
   EXPECT_TRUE(with.resume);
 
   // What failed before its first step has left a deck and a summary.
   scratch.write("without/deck.prm", "old");
   scratch.write("without/summary.json", "old");
   RunOptions without = options_for(scratch.path("without"), true);
-  EXPECT_NE(prepare_output_directory(without).find("starts afresh"), std::string::npos);
+  EXPECT_NE(prepare_output_directory(without).message.find("starts afresh"),
+            std::string::npos);
   EXPECT_FALSE(without.resume);
 }
 
@@ -103,4 +104,19 @@ TEST(OutputDirectory, RefusesWhatCannotBeWrittenTo)
   // Not even root may create files in the process file system.
   EXPECT_NE(refusal_of(options_for("/proc")).find("cannot be written to"),
             std::string::npos);
+}
+
+TEST(OutputDirectory, BelongsToOneRunAtATime)
+{
+  const Scratch scratch;
+  scratch.write("run/state.h5", "state");
+  RunOptions first = options_for(scratch.path("run"), true);
+  {
+    const OutputDirectory held = prepare_output_directory(first);
+    ASSERT_TRUE(held.lock->is_held());
+    const std::string text = refusal_of(options_for(scratch.path("run"), true));
+    EXPECT_NE(text.find("another run is at work there"), std::string::npos) << text;
+    EXPECT_EQ(refusal_of(options_for(scratch.path("other"))), "");
+  }
+  EXPECT_EQ(refusal_of(options_for(scratch.path("run"), true)), "");
 }
