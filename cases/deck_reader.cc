@@ -4,7 +4,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
+#include <utility>
 
 namespace antiform::cases
 {
@@ -45,7 +47,16 @@ public:
     }
     open_files_.push_back(canonical);
     lines(input, file);
+    if (const int more = n_unreadable_[file] - most_unreadable_lines; more > 0)
+      problems_.push_back(file + ": " + std::to_string(more) +
+                          " more lines cannot be read. Is this a deck (.prm)?");
     open_files_.pop_back();
+  }
+
+  void read_text(const std::string &text)
+  {
+    std::istringstream input(text);
+    lines(input, "");
   }
 
 private:
@@ -111,8 +122,9 @@ private:
     if (keyword == "set" && rest.find('=') != std::string::npos)
     {
       const std::size_t equals = rest.find('=');
-      deck_.entries.push_back({prefix() + tidy(rest.substr(0, equals)),
-                               tidy(rest.substr(equals + 1)), place});
+      add_entry({prefix() + tidy(rest.substr(0, equals)), tidy(rest.substr(equals + 1)),
+                 place},
+                file);
     }
     else if (keyword == "subsection" && !rest.empty())
     {
@@ -128,10 +140,22 @@ private:
                .string(),
            place);
     }
-    else
-      problems_.push_back(place + ": cannot read '" + line +
+    else if (++n_unreadable_[file] <= most_unreadable_lines)
+      problems_.push_back(place + ": cannot read '" + line.substr(0, longest_quotation) +
+                          (line.size() > longest_quotation ? "..." : "") +
                           "'. A line is 'set ENTRY = VALUE', 'subsection NAME', 'end', "
                           "'include FILE' or a comment after '#'.");
+  }
+
+  /// An entry of an include may be set anew; twice in one file is a slip.
+  void add_entry(const DeckLine &entry, const std::string &file)
+  {
+    const auto [first, is_new] = places_.insert({{file, entry.path}, entry.place});
+    if (!is_new)
+      problems_.push_back(entry.place + ": '" + entry.path +
+                          "' has been set in this file already (" + first->second +
+                          "). Remove one of the two lines.");
+    deck_.entries.push_back(entry);
   }
 
   void end(const std::string &place, const std::size_t depth_before)
@@ -149,8 +173,14 @@ private:
     return open_sections_.empty() ? "" : open_sections_.back().path + "/";
   }
 
+  static constexpr int most_unreadable_lines = 3; // named one by one, of a file
+  static constexpr std::size_t longest_quotation = 80;
+
   DeckText &deck_;
   std::vector<std::string> &problems_;
+  std::map<std::string, int> n_unreadable_; ///< lines of a file
+  std::map<std::pair<std::string, std::string>, std::string>
+      places_; ///< where a file has set an entry
   std::vector<DeckLine> open_sections_; ///< path, own name, place
   std::vector<fs::path> open_files_;
 };
@@ -189,6 +219,26 @@ DeckText scan_deck(const std::string &file, std::vector<std::string> &problems)
   DeckText deck;
   Scanner(deck, problems).read(file, "");
   return deck;
+}
+
+std::vector<std::string> deck_differences(const std::string &deck,
+                                          const std::string &other)
+{
+  std::vector<std::string> problems;
+  std::map<std::string, std::pair<std::string, std::string>> values;
+  DeckText first, second;
+  Scanner(first, problems).read_text(deck);
+  Scanner(second, problems).read_text(other);
+  for (const DeckLine &line : first.entries)
+    values[line.path].first = line.value;
+  for (const DeckLine &line : second.entries)
+    values[line.path].second = line.value;
+  std::vector<std::string> differences;
+  for (const auto &[path, pair] : values)
+    if (pair.first != pair.second)
+      differences.push_back("'" + path + "' = '" + pair.first + "' and not '" +
+                            pair.second + "'");
+  return differences;
 }
 
 void scan_override(const std::string &text,

@@ -31,6 +31,11 @@ void scan_override(const std::string &text,
                    DeckText &deck,
                    std::vector<std::string> &problems);
 
+/// What two texts without includes set differently: "'Section/Entry' = 'this' and not
+/// 'that'" for each entry.
+std::vector<std::string> deck_differences(const std::string &deck,
+                                          const std::string &other);
+
 /// The candidate that @p name was most likely meant to be; empty when none is near.
 std::string nearest_name(const std::string &name,
                          const std::vector<std::string> &candidates);

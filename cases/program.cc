@@ -1,6 +1,7 @@
 #include "cases/program.h"
 
 #include "cases/circle_record.h"
+#include "cases/deck_reader.h"
 #include "cases/interrupt.h"
 #include "cases/layer_packing.h"
 #include "cases/output_directory.h"
@@ -328,12 +329,16 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
     state.emplace(path, communicator);
     std::string deck;
     state->text("deck", deck);
-    if (deck != effective_deck(parameters))
-      throw InputError(
-          {"'" + path +
-           "' is the checkpoint of another deck: its parameters differ from those asked "
-           "for now (compare with deck.prm beside it). Resume with the same deck and the "
-           "same --set, or choose another directory with -o."});
+    if (const std::string asked = effective_deck(parameters); deck != asked)
+    {
+      std::string problem =
+          "'" + path +
+          "' is the checkpoint of another deck. Resume with the same deck and the same "
+          "--set, or choose another directory with -o. The checkpoint has:";
+      for (const std::string &difference : deck_differences(deck, asked))
+        problem += "\n    " + difference;
+      throw InputError({problem});
+    }
     return state;
   }
   catch (const InputError &)

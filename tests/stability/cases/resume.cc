@@ -194,6 +194,8 @@ TEST_P(ResumeTiny, WithAnotherDeckIsRefused)
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("is the checkpoint of another deck"), std::string::npos)
       << outcome.output;
+  EXPECT_NE(outcome.output.find("'Layer/Seed' = '1' and not '2'"), std::string::npos)
+      << outcome.output;
   EXPECT_EQ(all_contents(directory()), before);
 }
 

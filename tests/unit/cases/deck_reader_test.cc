@@ -112,6 +112,48 @@ TEST(DeckReader, CollectsEveryUnreadableLine)
       << problems[3];
 }
 
+TEST(DeckReader, NamesThreeLinesOfWhatIsNoDeckAndCountsTheOthers)
+{
+  const Scratch scratch;
+  std::string text;
+  for (int k = 0; k < 1000; ++k)
+    text += std::string(500, 'x') + "\n";
+  const std::string file = scratch.write("a.vtu", text);
+  std::vector<std::string> problems;
+  scan_deck(file, problems);
+  ASSERT_EQ(problems.size(), 4u);
+  EXPECT_LT(problems[0].size(), file.size() + 300);
+  EXPECT_NE(problems[3].find("997 more lines"), std::string::npos) << problems[3];
+}
+
+TEST(DeckReader, RefusesAnEntryThatAFileSetsTwiceButNotOneThatItsIncludeSets)
+{
+  const Scratch scratch;
+  scratch.write("rock.prm", "subsection Layer\nset Seed = 1\nend\n");
+  const std::string file = scratch.write("a.prm", "include rock.prm\n"
+                                                  "subsection Layer\n"
+                                                  "set Seed = 2\n"
+                                                  "end\n"
+                                                  "subsection Layer\n"
+                                                  "set Seed = 3\n"
+                                                  "end\n");
+  std::vector<std::string> problems;
+  scan_deck(file, problems);
+  ASSERT_EQ(problems.size(), 1u) << join(problems, "\n");
+  EXPECT_EQ(problems[0].find(file + ":6: 'Layer/Seed'"), 0u) << problems[0];
+  EXPECT_NE(problems[0].find(file + ":3"), std::string::npos) << problems[0];
+}
+
+TEST(DeckReader, TellsWhatTwoDecksSetDifferently)
+{
+  const std::string one = "set Title = a\nsubsection Layer\nset Seed = 1\nend\n",
+                    other = "set Title = a\nsubsection Layer\nset Seed = 2\nend\n";
+  EXPECT_TRUE(deck_differences(one, one).empty());
+  const std::vector<std::string> differences = deck_differences(one, other);
+  ASSERT_EQ(differences.size(), 1u);
+  EXPECT_EQ(differences[0], "'Layer/Seed' = '1' and not '2'");
+}
+
 TEST(DeckReader, RefusesAFolderAndAMissingDeck)
 {
   const Scratch scratch;
