@@ -17,8 +17,14 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
-double finite(const std::string &path, const std::string &entry, const double x)
+/// @p x, which a run that came to its end has; what a failed one has lost is null.
+Json number(const std::string &path,
+            const std::string &entry,
+            const double x,
+            const bool failed)
 {
+  if (!std::isfinite(x) && failed)
+    return nullptr;
   if (!std::isfinite(x))
     throw std::runtime_error("'" + path + "' is not written: '" + entry + "' is " +
                              (std::isnan(x) ? "not a number" : "infinite") +
@@ -54,8 +60,10 @@ void write_summary(const std::string &path, const Summary &summary)
   json["version"] = summary.version;
   json["status"] = summary.status;
   json["warnings"] = summary.warnings;
-  json["wall_seconds"] = finite(path, "wall_seconds", summary.wall_seconds);
-  json["cpu_seconds"] = finite(path, "cpu_seconds", summary.cpu_seconds);
+  const auto finite = [&](const std::string &entry, const double x)
+  { return number(path, entry, x, summary.status == "failed"); };
+  json["wall_seconds"] = finite("wall_seconds", summary.wall_seconds);
+  json["cpu_seconds"] = finite("cpu_seconds", summary.cpu_seconds);
   json["peak_memory_bytes"] = summary.peak_memory;
   json["ranks"] = summary.ranks;
   json["threads"] = summary.threads;
@@ -64,18 +72,18 @@ void write_summary(const std::string &path, const Summary &summary)
   json["solves"] = summary.solves;
   json["results"] = Json::object();
   for (const auto &[name, result] : summary.results)
-    json["results"][name] = {{"value", finite(path, "results/" + name, result.value)},
+    json["results"][name] = {{"value", finite("results/" + name, result.value)},
                              {"unit", result.unit}};
   json["energy"] = Json::object();
   for (const auto &[name, value] : summary.energy)
-    json["energy"][name] = finite(path, "energy/" + name, value);
+    json["energy"][name] = finite("energy/" + name, value);
   json["effects"] = Json::object();
   for (const auto &[name, effect] : summary.effects)
     json["effects"][name] = {
         {"active", effect.active},
         {"reason", effect.reason},
         {"calls", effect.calls},
-        {"seconds", finite(path, "effects/" + name + "/seconds", effect.seconds)}};
+        {"seconds", finite("effects/" + name + "/seconds", effect.seconds)}};
   // A title may come in any encoding; JSON is UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   coupling::replace_file(path, text + '\n');

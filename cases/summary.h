@@ -56,7 +56,7 @@ Usage measure_usage(MPI_Comm communicator);
 
 /// Write @p summary as JSON, whole or not at all. Numbers read back to the same bits.
 /// Throws std::runtime_error naming the entry if a number is NaN or infinite (nothing is
-/// written then), and naming the file if it cannot be written; std::logic_error for an
+/// written then; of a failed run such numbers are written as null), and naming the file if it cannot be written; std::logic_error for an
 /// unknown status.
 void write_summary(const std::string &path, const Summary &summary);
 } // namespace antiform::cases

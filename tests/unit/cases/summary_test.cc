@@ -71,10 +71,27 @@ TEST(Summary, RefusesNumbersThatAreNone)
   s = sample();
   s.energy["slip"] = std::numeric_limits<double>::infinity();
   EXPECT_NE(error(s).find("'energy/slip' is infinite"), std::string::npos);
+  s.status = "interrupted";
+  EXPECT_NE(error(s).find("'energy/slip' is infinite"), std::string::npos);
   s = sample();
   s.status = "fine";
   EXPECT_THROW(write_summary(path, s), std::logic_error);
   EXPECT_EQ(read_file(path), former);
+}
+
+TEST(Summary, OfAFailedRunHasNullForWhatWasLost)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder.path("summary.json");
+  Summary s = sample();
+  s.status = "failed";
+  s.energy["kinetic"] = std::numeric_limits<double>::quiet_NaN();
+  s.results["limb_dip"] = {std::numeric_limits<double>::infinity(), "deg"};
+  write_summary(path, s);
+  const auto json = nlohmann::json::parse(read_file(path));
+  EXPECT_TRUE(json["energy"]["kinetic"].is_null());
+  EXPECT_TRUE(json["results"]["limb_dip"]["value"].is_null());
+  EXPECT_EQ(json["energy"]["closure_error"].get<double>(), 1e-12 / 3.);
 }
 
 TEST(Summary, FullDiskLeavesTheFormerFile)
