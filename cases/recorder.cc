@@ -46,6 +46,7 @@ constexpr double fallen_transits = 2., fallen_samples = 3.;
 Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
     : scene_(scene)
     , directory_(std::move(directory))
+    , fold_(scene)
 {
   const Parameters &p = scene.parameters;
   const double per_step = scene.shortening_rate * scene.simulation->clock().dt;
@@ -60,7 +61,6 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
     if (scene.grains)
       crack_table_.emplace(directory_ + "/cracks.csv");
   }
-  find_surface();
 }
 
 std::vector<std::string> Recorder::columns() const
@@ -80,78 +80,6 @@ bool Recorder::writes_tables() const
 double Recorder::over_ranks(const double share) const
 {
   return dealii::Utilities::MPI::sum(share, scene_.communicator());
-}
-
-double Recorder::window() const
-{
-  const SectionGeometry &g = scene_.geometry;
-  return std::max(1.5 * g.diameter(), g.wavelength() / 40.);
-}
-
-void Recorder::find_surface()
-{
-  const SectionGeometry &g = scene_.geometry;
-  if (scene_.mesh)
-  {
-    const auto partitioner = scene_.mesh->displacement.get_partitioner();
-    for (const auto dof : scene_.solid->locally_owned())
-    {
-      const dealii::Point<2> x = scene_.solid->support_point(dof);
-      if (scene_.solid->component(dof) == 1 && std::abs(x[0]) <= window() &&
-          x[1] >= g.surface() - 1e-9 * g.thickness())
-        surface_.push_back(partitioner->global_to_local(dof));
-    }
-    return;
-  }
-  for (const auto &[grain, width] : surface_grains(*scene_.grains, g))
-    if (std::abs(scene_.grains->state.grains.reference_x[grain]) <= window())
-      surface_.push_back(static_cast<std::uint32_t>(grain));
-}
-
-double Recorder::surface_uplift() const
-{
-  double sum = 0., n = static_cast<double>(surface_.size());
-  for (const std::uint32_t i : surface_)
-    sum += scene_.mesh ? scene_.mesh->displacement.begin()[i]
-                       : scene_.grains->state.grains.displacement_y[i];
-  sum = over_ranks(sum);
-  n = over_ranks(n);
-  return n > 0. ? sum / n : 0.;
-}
-
-double Recorder::mean_uplift(const double x_reference, const double half_width) const
-{
-  double sum = 0., n = 0.;
-  if (scene_.grains)
-  {
-    const discrete::Grains &grains = scene_.grains->state.grains;
-    for (std::size_t i = 0; i < grains.size(); ++i)
-      if (grains.region[i] == layer_region &&
-          std::abs(grains.reference_x[i] - x_reference) <= half_width)
-      {
-        sum += grains.displacement_y[i];
-        n += 1.;
-      }
-  }
-  else
-  {
-    const SectionGeometry &g = scene_.geometry;
-    const double eps = 1e-9 * g.thickness();
-    for (const auto dof : scene_.solid->locally_owned())
-    {
-      const dealii::Point<2> x = scene_.solid->support_point(dof);
-      if (scene_.solid->component(dof) == 1 &&
-          std::abs(x[0] - x_reference) <= half_width && x[1] <= g.layer_top(x[0]) + eps &&
-          x[1] >= g.layer_bottom(x[0]) - eps)
-      {
-        sum += scene_.mesh->displacement(dof);
-        n += 1.;
-      }
-    }
-  }
-  sum = over_ranks(sum);
-  n = over_ranks(n);
-  return n > 0. ? sum / n : 0.;
 }
 
 Recorder::Sample Recorder::measure() const
@@ -181,24 +109,7 @@ Recorder::Sample Recorder::measure() const
   sample.stress = scene_.loading_sign() * sample.axial_stress;
   if (specimen_)
     sample.gauges = specimen_->measure(scene_);
-  // Crest over the two troughs, each a window of one cell of a fortieth of the wave.
-  const double half_width = window();
-  const double trough = std::min(0.5 * g.wavelength(), 0.5 * g.length() - half_width);
-  const double crest_uplift = mean_uplift(0., half_width);
-  const double trough_uplift =
-      0.5 * (mean_uplift(-trough, half_width) + mean_uplift(trough, half_width));
-  sample.fold_amplitude = g.amplitude() + crest_uplift - trough_uplift;
-  // Dip between an eighth and three eighths of the wave, where the limb is straight.
-  const double inner = 0.25 * trough, outer = 0.75 * trough;
-  double steepest = 0.;
-  for (const double side : {-1., 1.})
-  {
-    const double rise = g.axis(side * inner) + mean_uplift(side * inner, half_width) -
-                        g.axis(side * outer) - mean_uplift(side * outer, half_width);
-    steepest = std::max(steepest, std::atan(rise / (outer - inner)));
-  }
-  sample.limb_dip = steepest * 180. / M_PI;
-  sample.surface_uplift = surface_uplift();
+  sample.fold = fold_.measure();
   return sample;
 }
 
@@ -270,11 +181,11 @@ void Recorder::append_history(const Clock &clock, const Sample &sample)
                              sample.matrix_share,
                              static_cast<double>(n_tensile_),
                              static_cast<double>(n_shear_),
-                             sample.fold_amplitude,
-                             sample.limb_dip,
+                             sample.fold.fold_amplitude,
+                             sample.fold.limb_dip,
                              ratio_,
                              gap,
-                             sample.surface_uplift,
+                             sample.fold.surface_uplift,
                              energies_.boundary_work,
                              energies_.kinetic,
                              energies_.strain_grains,
@@ -323,8 +234,11 @@ void Recorder::look_for_end(const Sample &sample)
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
   else if (sample.strain >= run.longest_shortening)
+  {
+    without_peak_ = !peaked;
     why_finished_ =
         std::string("the longest shortening") + (peaked ? "" : ", without a peak");
+  }
 }
 
 double Recorder::share_done() const
@@ -392,9 +306,9 @@ void Recorder::fill(Summary &summary) const
     specimen_->fill(scene_, peak_stress_, summary);
   results["section_stiffness"] = {section_stiffness(), "Pa"};
   results["matrix_share_at_peak"] = {peak_share_, "-"};
-  results["fold_amplitude"] = {last_.fold_amplitude, "m"};
-  results["limb_dip"] = {last_.limb_dip, "deg"};
-  results["surface_uplift"] = {last_.surface_uplift, "m"};
+  results["fold_amplitude"] = {last_.fold.fold_amplitude, "m"};
+  results["limb_dip"] = {last_.fold.limb_dip, "deg"};
+  results["surface_uplift"] = {last_.fold.surface_uplift, "m"};
   if (scene_.grains)
   {
     const auto &cracks = scene_.grains->state.cracks;
@@ -435,6 +349,10 @@ void Recorder::fill(Summary &summary) const
     summary.warnings.push_back("the energy ledger is open by " + std::to_string(closure) +
                                " of its terms, 0.001 is the limit: lower 'Run/Step "
                                "safety', or load more slowly");
+  if (without_peak_)
+    summary.warnings.push_back(
+        "the run ended at the longest shortening before its stress had a peak: the peak "
+        "given is its largest stress so far. Raise 'Run/Longest shortening'");
   for (const std::string &warning : mesh_watch_.warnings())
     summary.warnings.push_back(warning);
 }
@@ -476,9 +394,9 @@ void Recorder::visit_state(coupling::StateArchive &archive)
                                 &last_.axial_stress,
                                 &last_.wall_force,
                                 &last_.matrix_share,
-                                &last_.fold_amplitude,
-                                &last_.limb_dip,
-                                &last_.surface_uplift};
+                                &last_.fold.fold_amplitude,
+                                &last_.fold.limb_dip,
+                                &last_.fold.surface_uplift};
   const auto terms = energies_.terms();
   members.insert(members.end(), terms.begin(), terms.end());
   std::vector<double> values;

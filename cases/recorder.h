@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cases/fold_gauge.h"
 #include "cases/scene.h"
 #include "cases/small_strain.h"
 #include "cases/specimen.h"
@@ -48,32 +49,26 @@ private:
   struct Sample
   {
     double shortening = 0., axial_stress = 0., wall_force = 0., matrix_share = 0.;
-    double fold_amplitude = 0., limb_dip = 0., surface_uplift = 0.;
+    FoldGauge::Reading fold;
     double strain = 0., stress = 0.; ///< in the direction of loading: they grow
     std::vector<double> gauges;      ///< of a specimen
   };
   Sample measure() const;
   bool writes_tables() const; ///< the first rank does
   double over_ranks(double share) const;
-  double mean_uplift(double x_reference, double half_width) const;
-  double window() const; ///< half width over which a place is averaged [m]
-  void find_surface();
-  double surface_uplift() const;
   void append_history(const coupling::Clock &clock, const Sample &sample);
   void append_cracks();
   void close_ledger(const coupling::Energies &energies);
   void look_for_end(const Sample &sample);
-  void write_grain_fields(const std::string &number, double shortening);
   double section_stiffness() const;
   double crack_initiation_stress() const;
   std::vector<std::string> columns() const;
 
   Scene &scene_;
   std::string directory_;
+  FoldGauge fold_;
   std::int64_t sample_interval_ = 1;
   bool acted_ = false;
-  /// Top of the section above the crest: mesh dofs, or grains where there is no mesh.
-  std::vector<std::uint32_t> surface_;
   std::optional<coupling::Table> history_;
   std::optional<coupling::CrackTable> crack_table_;
 
@@ -94,5 +89,6 @@ private:
   coupling::Energies energies_;
   Sample last_;
   std::string why_finished_;
+  bool without_peak_ = false; ///< the longest shortening came first
 };
 } // namespace antiform::cases
