@@ -1,8 +1,8 @@
 #include "cases/effects.h"
 #include "cases/geometry.h"
+#include "cases/mechanism.h"
 #include "cases/program.h"
 #include "cases/sizes.h"
-#include "continuum/layer_theory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -16,56 +16,6 @@ namespace antiform::cases
 namespace
 {
 using Json = nlohmann::ordered_json;
-namespace theory = continuum::theory;
-
-struct Estimate
-{
-  double slenderness_ratio, critical_length_ratio;
-  double pinned, guided; ///< gamma at buckling, with the matrix
-  double bare_pinned, bare_guided;
-  bool crushes_first;
-};
-
-Estimate estimate(const Parameters &p, const SectionGeometry &g)
-{
-  const LayerParameters &l = p.layer;
-  const theory::Layer layer{l.young_modulus, l.poisson_ratio, l.thickness};
-  Estimate e{};
-  // The thesis' plot uses E and not the plane modulus; so do its ratios here.
-  e.slenderness_ratio = theory::slenderness_ratio(l.young_modulus, l.compressive_strength,
-                                                  g.wavelength(), l.thickness);
-  e.critical_length_ratio =
-      theory::critical_slenderness(l.young_modulus, l.compressive_strength) /
-      std::sqrt(12.);
-  std::vector<theory::Side> sides;
-  if (p.has("matrix"))
-  {
-    const double E0 = p.matrix_modulus(), nu0 = p.matrix.poisson_ratio;
-    sides.push_back({E0, nu0, p.matrix.burial_depth_ratio * l.thickness,
-                     theory::Side::FarFace::free, 0.});
-    theory::Side base{E0, nu0, p.matrix.base_depth_ratio * l.thickness,
-                      theory::Side::FarFace::smooth_rigid, 0.};
-    if (p.has("foundation"))
-    {
-      base.far_face = theory::Side::FarFace::spring;
-      base.far_spring = p.foundation.stiffness_ratio * E0 / l.thickness;
-    }
-    else if (p.matrix.base == "fixed")
-      base.far_face = theory::Side::FarFace::rough_rigid;
-    sides.push_back(base);
-  }
-  const theory::SupportedLayer bare{layer, {}, 0., false};
-  const theory::SupportedLayer buried{layer, sides, 0., false};
-  // Ends that may turn: half a wave in L; ends guided by the walls: a full wave.
-  const double half = M_PI / g.wavelength(), full = 2. * half;
-  const double crushing = l.compressive_strength * l.thickness;
-  e.bare_pinned = bare.buckling_force(half) / crushing;
-  e.bare_guided = bare.buckling_force(full) / crushing;
-  e.pinned = buried.buckling_force(half) / crushing;
-  e.guided = buried.buckling_force(full) / crushing;
-  e.crushes_first = e.guided > 1.5;
-  return e;
-}
 
 std::string state_name(const Effect::State state)
 {
@@ -84,7 +34,7 @@ Json to_json(const Parameters &p)
 {
   const SectionGeometry g(p);
   const Sizes sizes = predict_sizes(p, g);
-  const Estimate e = estimate(p, g);
+  const Mechanism e = expect_mechanism(p, g);
   Json json;
   json["title"] = p.title;
   json["geometry"] = {{"length_m", g.length()},          {"wavelength_m", g.wavelength()},
@@ -126,7 +76,7 @@ void line(std::ostream &out, const char *format, ...)
   va_end(arguments);
   out << text << '\n';
 }
-void print_mechanism(const Estimate &e, std::ostream &out)
+void print_mechanism(const Parameters &p, const Mechanism &e, std::ostream &out)
 {
   out << "\nMechanism (closed forms, docs/theory/continuum.md)\n";
   line(out, "  slenderness ratio Lambda = %.3f (L/h at Lambda = 1: %.1f)",
@@ -137,9 +87,9 @@ void print_mechanism(const Estimate &e, std::ostream &out)
        e.pinned, e.guided, e.bare_pinned, e.bare_guided);
   if (e.crushes_first)
     out << "  warning: the layer is expected to crush before it folds (gamma above 1.5 "
-           "with "
-           "guided ends). Raise 'Layer / Slenderness ratio' or 'Matrix / Stiffness "
-           "contrast'.\n";
+           "with guided ends). Raise 'Layer/"
+        << (p.layer.length_ratio > 0. ? "Length ratio" : "Slenderness ratio") << "'"
+        << (p.has("matrix") ? " or 'Matrix/Stiffness contrast'" : "") << ".\n";
   else if (e.guided > 1.)
     out << "  the bare estimate with guided ends is above gamma = 1: bent beforehand, "
            "the "
@@ -156,7 +106,7 @@ int check(const Parameters &p, const bool json, std::ostream &out)
   }
   const SectionGeometry g(p);
   const Sizes sizes = predict_sizes(p, g);
-  const Estimate e = estimate(p, g);
+  const Mechanism e = expect_mechanism(p, g);
   out << p.title << "\n\nScene\n";
   line(out, "  section   %.4g m long, from y = %.4g to %.4g m", g.length(), g.base(),
        g.surface());
@@ -179,10 +129,10 @@ int check(const Parameters &p, const bool json, std::ostream &out)
            p.bridging.overlap, p.bridging.overlap * g.diameter(), p.bridging.buffer);
   }
   if (!p.is_specimen())
-    print_mechanism(e, out);
+    print_mechanism(p, e, out);
   out << "\nEffects\n";
   for (const Effect &effect : list_effects(p))
-    line(out, "  %-17s %-12s %s", effect.name.c_str(), state_name(effect.state).c_str(),
+    line(out, "  %-21s %-12s %s", effect.name.c_str(), state_name(effect.state).c_str(),
          effect.reason.c_str());
   out << "\nSize and cost (predicted)\n";
   line(out, "  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f dofs",

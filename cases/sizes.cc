@@ -1,5 +1,6 @@
 #include "cases/sizes.h"
 
+#include "cases/mechanism.h"
 #include "cases/mesh_strips.h"
 
 #include <algorithm>
@@ -41,6 +42,22 @@ double rows_of_cells(const Parameters &p, const SectionGeometry &g)
   return rows;
 }
 
+/// At which a run ends, roughly [-].
+double predict_shortening(const Parameters &p, const SectionGeometry &g)
+{
+  if (p.run.end_shortening > 0.)
+    return p.run.end_shortening;
+  if (p.confinement() != nullptr) // goes on well beyond the strain that breaks it bare
+    return std::min(5e-3, p.run.longest_shortening);
+  const double crushing = p.layer.compressive_strength / p.layer.young_modulus;
+  // Rocks break in tension at a tenth of the strain; a bent layer folds, if it can.
+  const double share = p.walls.action == "pull" ? 0.1
+                       : g.amplitude() > 0. ? expect_mechanism(p, g).relative_strength()
+                                            : 1.;
+  return std::min(p.run.strain_multiple_of_peak * share * crushing,
+                  p.run.longest_shortening);
+}
+
 double predict_memory(const Parameters &p, const Sizes &sizes)
 {
   // Bytes: 600 a grain, 150 a joint; a supernodal factor of the bonded assembly takes
@@ -72,16 +89,12 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
   }
   if (p.has("walls") && p.run.driver != "static")
   {
-    // An axial transit takes about two steps a grain diameter.
-    const double transit = 2. * g.length() / d;
-    // Rocks break near 2.5e-3 in compression, at a tenth of that in tension, and under
-    // confinement go on well beyond.
-    const double usual = p.walls.action == "pull" ? 2.5e-4
-                         : p.confinement() != nullptr
-                             ? std::min(5e-3, p.run.longest_shortening)
-                             : 2.5e-3;
-    const double millistrain =
-        1e3 * (p.run.end_shortening > 0. ? p.run.end_shortening : usual);
+    // Steps in which a wave passes a mean grain, of a packing with this spread of sizes.
+    const double steps_per_grain =
+        1.6 * std::sqrt(1. + (p.has("damping") ? p.damping.coefficient : 0.)) /
+        p.run.safety;
+    const double transit = steps_per_grain * g.length() / d;
+    const double millistrain = 1e3 * predict_shortening(p, g);
     sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
     if (p.confinement() != nullptr)
       sizes.steps += 2. * transit * p.confinement()->ramp;

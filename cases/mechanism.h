@@ -1,0 +1,22 @@
+#pragma once
+
+#include "cases/geometry.h"
+
+namespace antiform::cases
+{
+/// How the layer of a deck is expected to fail, by closed forms (docs/theory/continuum.md).
+/// gamma is a buckling load over the load that crushes the layer.
+struct Mechanism
+{
+  double slenderness_ratio;     ///< Lambda [-]
+  double critical_length_ratio; ///< L/h at Lambda = 1 [-]
+  double pinned, guided;        ///< gamma with the matrix; ends that turn, or do not [-]
+  double bare_pinned, bare_guided; ///< the same without it [-]
+  bool crushes_first;              ///< long before it could fold
+
+  /// Share of the crushing strain at which the layer gives way [-].
+  double relative_strength() const { return pinned < 1. ? pinned : 1.; }
+};
+
+Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g);
+} // namespace antiform::cases
