@@ -138,7 +138,7 @@ void declare(LayerParameters &layer, Declarations &entries)
                  "grains|continuum");
   entries.number("Thickness", layer.thickness,
                  "h, the length that all ratios are multiples of [m].",
-                 Number::above(0.));
+                 Number::above(0.).up_to(1e5));
   entries.choice(
       "Shape", layer.shape,
       "straight, or cosine: bent beforehand into one anticline between straight "
@@ -198,7 +198,7 @@ void declare(LayerParameters &layer, Declarations &entries)
                  Number::at_least(0.));
   entries.number("Grain density", layer.grain_density,
                  "Of the solid; the rock's is less by the porosity [kg/m^3].",
-                 Number::above(0.));
+                 Number::between(100., 3e4));
   entries.whole("Seed", layer.seed,
                 "Of the random packing; the same seed gives the same bits [-].",
                 Number::at_least(0.));

@@ -41,7 +41,7 @@ void declare(MatrixParameters &matrix, Declarations &entries)
                  Number::at_least(0.).below(0.5));
   entries.number("Grain density", matrix.grain_density,
                  "Of the solid; the matrix' is less by the porosity [kg/m^3].",
-                 Number::above(0.));
+                 Number::between(100., 3e4));
   entries.number("Burial depth ratio", matrix.burial_depth_ratio,
                  "H/h, cover above the crest over thickness of the layer [-].",
                  Number::at_least(0.));
@@ -218,7 +218,8 @@ void declare(OutputParameters &output, Declarations &entries)
                 "Lines of history.csv for a shortening of 1e-3 [-].",
                 Number::at_least(1.));
   entries.number("Fields interval", output.fields_interval,
-                 "Shortening between two field files [-].", Number::above(0.));
+                 "Shortening between two field files [-].",
+                 Number::at_least(1e-7));
   entries.number("Checkpoint interval", output.checkpoint_minutes,
                  "Wall time between two checkpoints [minutes].", Number::above(0.));
   entries.leave();
@@ -306,7 +307,7 @@ void declare_parameters(Parameters &p,
                   Number::at_least(0.), entries);
     else if (section == "Gravity")
       declare_one(section, "Acceleration", p.gravity.acceleration, "Downward [m/s^2].",
-                  Number::above(0.), entries);
+                  Number::above(0.).up_to(1e3), entries);
     else if (section == "Walls")
       declare(p.walls, entries);
     else if (section == "Servo walls")
