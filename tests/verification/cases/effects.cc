@@ -97,6 +97,25 @@ TEST(Effects, OfBreakageBeginWithTheFirstBrokenBond)
   EXPECT_LT(calls(summary, "search"), steps_after / 10);
 }
 
+// The shell of candidates is as wide as grains can move in many steps: of a run that ends
+// right after its first break, loose grains are searched for once.
+TEST(Effects, OfTheSearchAreOneCallRightAfterTheFirstBreak)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> fine{"Output/Samples per millistrain=2000"};
+  run_and_summarise(folder.path("whole"), fine);
+  const CsvTable cracks(folder.path("whole/cracks.csv"));
+  const double first = cracks.column("shortening").front();
+  std::vector<std::string> entries = fine;
+  entries.push_back("Run/End shortening=" + std::to_string(first + 2e-6));
+  const nlohmann::json summary = run_and_summarise(folder.path("short"), entries);
+  const CsvTable same(folder.path("short/cracks.csv"));
+  ASSERT_FALSE(same.column("step").empty());
+  EXPECT_EQ(same.column("step").front(), cracks.column("step").front());
+  ASSERT_GT(summary.at("steps"), same.column("step").front() + 1.);
+  EXPECT_EQ(calls(summary, "search"), 1);
+}
+
 TEST(Effects, AreTheSameInCheckAndInTheSummary)
 {
   const TemporaryFolder folder;
