@@ -8,9 +8,7 @@ influence.md (slopes, rank correlations, against what Wu & Xu 2016 found) and
 influence.png. One seed took 277 core seconds.
 """
 import argparse
-import concurrent.futures
 import csv
-import json
 import os
 import subprocess
 import sys
@@ -20,7 +18,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = os.path.dirname(os.path.abspath(__file__))
+from specimen_runs import HERE, add_arguments, run, run_all
 
 # Small, fast specimens: signs are wanted, not strengths. The gap is one that both the
 # densest and the loosest bonding of the study are within.
@@ -36,7 +34,7 @@ TENSILE = 15e6  # sigma_b of rock 1
 
 # name: (entries of a value, values); the second is what rock 1 has, but for CN.
 PARAMETERS = {
-    "CN": (lambda v: {"Layer/Coordination number": v}, [4., 4.5, 5., 5.5]),
+    "CN": (lambda v: {"Layer/Coordination number": v}, [4.4, 4.8, 5.2, 5.6]),
     "CD": (lambda v: {"Layer/Joint types/Slit fraction": v}, [0., 0.1, 0.2, 0.3]),
     "c_b/sigma_b": (lambda v: {"Layer/Flat joint/Cohesion": v * TENSILE},
                     [2., 4., 6., 8.]),
@@ -48,24 +46,6 @@ EXPECTED = [("UCS/TS", "CN", 1), ("UCS/TS", "c_b/sigma_b", 1),
             ("m_i", "CD", 1), ("m_i", "c_b/sigma_b", 1), ("m_i", "phi_b", 1),
             ("m_i", "CN", -1), ("phi", "CD", 1), ("phi", "c_b/sigma_b", 1),
             ("phi", "phi_b", 1)]
-
-
-def run(antiform, directory, test, entries):
-    """Make the run unless it is there; its summary, or None where it failed."""
-    summary = os.path.join(directory, "summary.json")
-    if not os.path.exists(summary):
-        deck = os.path.join(HERE, test.split("-")[0] + ".prm")
-        command = [antiform, "run", deck, "-o", directory]
-        for name, value in entries.items():
-            command += ["--set", f"{name}={value!r}"]
-        done = subprocess.run(command, env={**os.environ, "OMP_NUM_THREADS": "1"},
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            print(f"{directory}: {done.stdout[-400:]}{done.stderr[-400:]}",
-                  file=sys.stderr)
-            return None
-    with open(summary) as file:
-        return json.load(file)
 
 
 def residual(directory):
@@ -97,18 +77,13 @@ def specimens(arguments):
             entries["Run/Stress ratio of peak"] = 0.
         path = os.path.join(arguments.directory, name.replace("/", "_over_"),
                             f"{value}-seed{seed}-{test}")
-        return path, run(arguments.antiform, path, test, entries)
+        deck = os.path.join(HERE, test.split("-")[0] + ".prm")
+        return path, run(arguments.antiform, path, deck, entries)
 
     keys = [(name, value, seed, test) for name, (_, values) in PARAMETERS.items()
             for value in values for seed in range(1, arguments.seeds + 1)
             for test in TESTS]
-    results = {}
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        futures = {pool.submit(job, *key): key for key in keys}
-        for n, future in enumerate(concurrent.futures.as_completed(futures), 1):
-            results[futures[future]] = future.result()
-            if n % 25 == 0 or n == len(keys):
-                print(f"{n} of {len(keys)} runs", flush=True)
+    results = run_all(job, keys, arguments.jobs)
     rows = []
     for name, (_, values) in PARAMETERS.items():
         for value in values:
@@ -207,10 +182,7 @@ def draw(rows, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the report")
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    add_arguments(parser)
     arguments = parser.parse_args()
     os.makedirs(arguments.directory, exist_ok=True)
     rows = specimens(arguments)
