@@ -265,9 +265,11 @@ GrainSection make_grains(const Parameters &p,
   progress("bonding");
   bond(section, p, pairs,
        p.has("fractures") ? make_fractures(p, geometry) : std::vector<Fracture>{});
+  const auto seed = static_cast<std::uint64_t>(p.layer.seed);
+  if (p.layer.scatter.any())
+    scatter_strengths(section.state.joints, 0, p.layer.scatter, seed);
   if (p.has_unbonded_joints())
-    unbond_some(section.state.joints, 0, p.layer.types, section.mean_radius,
-                static_cast<std::uint64_t>(p.layer.seed));
+    unbond_some(section.state.joints, 0, p.layer.types, section.mean_radius, seed);
   return section;
 }
 

@@ -128,6 +128,19 @@ void declare(discrete::JointTypes &types, Declarations &entries)
                  Number::at_least(0.));
   entries.leave();
 }
+
+void declare(discrete::StrengthScatter &scatter, Declarations &entries)
+{
+  entries.enter("Strength scatter");
+  entries.number("Tensile strength deviation", scatter.tension,
+                 "Standard deviation over the mean of the tensile strength from joint to "
+                 "joint; normal, within three deviations [-].",
+                 Number::at_least(0.).up_to(0.5));
+  entries.number("Cohesion deviation", scatter.cohesion,
+                 "The same of the cohesion (the shear strength of a contact bond) [-].",
+                 Number::at_least(0.).up_to(0.5));
+  entries.leave();
+}
 } // namespace
 
 void declare(LayerParameters &layer, Declarations &entries)
@@ -211,6 +224,7 @@ void declare(LayerParameters &layer, Declarations &entries)
                  "flat joint|parallel bond|contact bond");
   declare(layer.joint, entries);
   declare(layer.types, entries);
+  declare(layer.scatter, entries);
   declare(layer.parallel_bond, entries);
   declare(layer.contact_bond, entries);
   entries.leave();

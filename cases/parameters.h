@@ -56,6 +56,7 @@ struct LayerParameters
   std::string bond_model = "flat joint"; ///< or parallel bond, contact bond
   discrete::FlatJoint joint;             ///< breakable, of whichever model
   discrete::JointTypes types;
+  discrete::StrengthScatter scatter;
   discrete::ParallelBond parallel_bond;
   discrete::ContactBond contact_bond;
 

@@ -87,6 +87,13 @@ std::string entries_of(const Parameters &p,
     entries.add("Gap deviation", types.gap_deviation);
     entries.leave();
   }
+  if (layer.scatter.any())
+  {
+    entries.enter("Strength scatter");
+    entries.add("Tensile strength deviation", layer.scatter.tension);
+    entries.add("Cohesion deviation", layer.scatter.cohesion);
+    entries.leave();
+  }
   entries.leave();
   return entries.text();
 }

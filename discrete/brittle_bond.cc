@@ -108,7 +108,12 @@ void break_bond(const Grains &grains,
 {
   DamagedJoints &damaged = joints.damaged;
   const std::size_t j = damaged.joint[record];
-  const BondConstants bond = constants(law);
+  BondConstants bond = constants(law);
+  if (!joints.tension_factor.empty())
+  {
+    bond.tensile_strength *= joints.tension_factor[j];
+    bond.cohesion *= joints.cohesion_factor[j];
+  }
   const JointDeformation now = deformation(grains, joints, j);
   const BondLoad old = bond_load(joints, bond, j, before);
   const BondLoad load = bond_load(joints, bond, j, now);

@@ -40,6 +40,11 @@ ElementLaw<double> element_law(const Joints &joints,
   law.tensile_strength = c.tensile_strength;
   law.cohesion = c.cohesion;
   law.tan_friction = c.tan_friction;
+  if (!joints.tension_factor.empty())
+  {
+    law.tensile_strength *= joints.tension_factor[j];
+    law.cohesion *= joints.cohesion_factor[j];
+  }
   return law;
 }
 

@@ -36,6 +36,8 @@ IntactKernelInput kernel_input(Joints &joints,
   in.initial_gap = pointer(joints.initial_gap);
   in.initial_shear = pointer(joints.initial_shear);
   in.initial_rotation = pointer(joints.initial_rotation);
+  in.tension_factor = pointer(joints.tension_factor);
+  in.cohesion_factor = pointer(joints.cohesion_factor);
   in.shear_ratio = 1. / law.stiffness_ratio;
   in.moment_factor = law.moment_factor;
   in.tension_arm = law.tension_arm;
@@ -89,6 +91,8 @@ DamagedKernelInput damaged_input(Joints &joints, const bool look_at_strengths)
   in.initial_gap = pointer(joints.initial_gap);
   in.initial_shear = pointer(joints.initial_shear);
   in.initial_rotation = pointer(joints.initial_rotation);
+  in.tension_factor = pointer(joints.tension_factor);
+  in.cohesion_factor = pointer(joints.cohesion_factor);
   in.laws = laws.data();
   in.n_elements = damaged.n_elements();
   in.joint = damaged.joint.data();

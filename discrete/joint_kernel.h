@@ -30,6 +30,7 @@ struct IntactKernelInput
   const double *normal_x, *normal_y, *length, *lever_difference, *stiffness, *half_length;
   const double *weight;                                         ///< or null
   const double *initial_gap, *initial_shear, *initial_rotation; ///< or null
+  const double *tension_factor, *cohesion_factor;               ///< or null
   double shear_ratio;                                           ///< 1 / kappa
   double moment_factor;    ///< 1/12, or (1 - 1/N^2)/12 without element moments
   double tension_arm;      ///< of the bending stress in the test of tension, over R
@@ -81,6 +82,7 @@ struct DamagedKernelInput
   const double *normal_x, *normal_y, *length, *lever_difference, *stiffness, *half_length;
   const double *weight;                                         ///< or null
   const double *initial_gap, *initial_shear, *initial_rotation; ///< or null
+  const double *tension_factor, *cohesion_factor;               ///< or null
   const ElementConstants *laws;                                 ///< per group
   int n_elements; ///< room for them in the state
   const std::int32_t *joint, *group;

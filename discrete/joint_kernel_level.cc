@@ -88,7 +88,7 @@ inline PairMotion pair_motion(const GrainLine *grains,
   return motion;
 }
 
-template <bool weighted, bool prestressed, bool full>
+template <bool weighted, bool prestressed, bool scattered, bool full>
 inline LaneMask intact_lanes(const IntactKernelInput &in,
                              const std::size_t j,
                              const std::size_t n,
@@ -129,10 +129,13 @@ inline LaneMask intact_lanes(const IntactKernelInput &in,
   transpose(row[0], row[1], row[2], row[3]);
   for (std::size_t l = 0; l < (full ? n_lanes : n); ++l)
     store(&force[l].x, row[l]);
+  if (scattered)
+    return (worst >= in.tensile_strength * get(in.tension_factor + j)) |
+           (coulomb > in.cohesion * get(in.cohesion_factor + j));
   return (worst >= in.tensile_strength) | (coulomb > in.cohesion);
 }
 
-template <bool weighted, bool prestressed>
+template <bool weighted, bool prestressed, bool scattered>
 std::size_t intact_law(const IntactKernelInput &in,
                        const std::size_t begin,
                        const std::size_t end,
@@ -143,9 +146,10 @@ std::size_t intact_law(const IntactKernelInput &in,
   LaneMask mask[intact_block / n_lanes], some{};
   for (std::size_t k = 0; k < whole; k += n_lanes)
     some |= mask[k / n_lanes] =
-        intact_lanes<weighted, prestressed, true>(in, begin + k, n_lanes, force + k);
+        intact_lanes<weighted, prestressed, scattered, true>(in, begin + k, n_lanes,
+                                                             force + k);
   if (whole < n)
-    some |= mask[whole / n_lanes] = intact_lanes<weighted, prestressed, false>(
+    some |= mask[whole / n_lanes] = intact_lanes<weighted, prestressed, scattered, false>(
         in, begin + whole, n - whole, force + whole);
   std::size_t n_over = 0;
   if (any(some))
@@ -153,6 +157,18 @@ std::size_t intact_law(const IntactKernelInput &in,
       if (mask[k / n_lanes][k % n_lanes] != 0)
         over[n_over++] = static_cast<std::int32_t>(begin + k);
   return n_over;
+}
+
+template <bool weighted, bool prestressed>
+std::size_t intact_scattered_or_not(const IntactKernelInput &in,
+                                    const std::size_t begin,
+                                    const std::size_t end,
+                                    JointForce *force,
+                                    std::int32_t *over)
+{
+  return in.tension_factor != nullptr
+             ? intact_law<weighted, prestressed, true>(in, begin, end, force, over)
+             : intact_law<weighted, prestressed, false>(in, begin, end, force, over);
 }
 
 std::size_t intact(const IntactKernelInput &in,
@@ -163,11 +179,11 @@ std::size_t intact(const IntactKernelInput &in,
 {
   if (in.weight != nullptr)
     return in.initial_gap != nullptr
-               ? intact_law<true, true>(in, begin, end, force, over)
-               : intact_law<true, false>(in, begin, end, force, over);
+               ? intact_scattered_or_not<true, true>(in, begin, end, force, over)
+               : intact_scattered_or_not<true, false>(in, begin, end, force, over);
   return in.initial_gap != nullptr
-             ? intact_law<false, true>(in, begin, end, force, over)
-             : intact_law<false, false>(in, begin, end, force, over);
+             ? intact_scattered_or_not<false, true>(in, begin, end, force, over)
+             : intact_scattered_or_not<false, false>(in, begin, end, force, over);
 }
 
 void sum(const std::int32_t *first,
@@ -221,6 +237,11 @@ element_laws(const DamagedKernelInput &in, const std::int32_t *joint, const Get 
   law.tensile_strength = get(&ElementConstants::tensile_strength);
   law.cohesion = get(&ElementConstants::cohesion);
   law.tan_friction = get(&ElementConstants::tan_friction);
+  if (in.tension_factor != nullptr)
+  {
+    law.tensile_strength *= gather(in.tension_factor, joint);
+    law.cohesion *= gather(in.cohesion_factor, joint);
+  }
   return law;
 }
 inline ElementLaw<Lanes> element_laws(const DamagedKernelInput &in,

@@ -9,6 +9,35 @@
 
 namespace antiform::discrete
 {
+namespace
+{
+// Among the uses of a seed.
+constexpr std::uint64_t stream_of_types = 7, stream_of_strengths = 8;
+
+/// Of the pair of grains alone, whichever is first.
+Random random_of_joint(const Joints &joints,
+                       const std::size_t j,
+                       const std::uint64_t seed,
+                       const std::uint64_t stream)
+{
+  const auto [low, high] = std::minmax(joints.first[j], joints.second[j]);
+  return {seed, (stream << 56) + (static_cast<std::uint64_t>(low) << 28) +
+                    static_cast<std::uint64_t>(high)};
+}
+
+/// Normal about 1, drawn again beyond three deviations and below a twentieth.
+double draw_factor(Random &random, const double deviation)
+{
+  double normal = 0., factor = 0.;
+  do
+  {
+    normal = random.normal();
+    factor = 1. + deviation * normal;
+  } while (std::abs(normal) > 3. || factor < 0.05);
+  return factor;
+}
+} // namespace
+
 void unbond(Joints &joints, const std::size_t j, const double gap)
 {
   if (joints.damage[j] >= 0)
@@ -32,23 +61,33 @@ void unbond_some(Joints &joints,
                  const double mean_radius,
                  const std::uint64_t seed)
 {
-  constexpr std::uint64_t stream = 7; // of joint types, among the uses of a seed
   for (std::size_t j = joints.groups[group].begin; j < joints.groups[group].end; ++j)
   {
-    const auto [low, high] = std::minmax(joints.first[j], joints.second[j]);
-    Random random(seed, (stream << 56) + (static_cast<std::uint64_t>(low) << 28) +
-                            static_cast<std::uint64_t>(high));
+    Random random = random_of_joint(joints, j, seed, stream_of_types);
     const double lot = random.uniform();
     if (lot < types.slit_fraction)
       unbond(joints, j, 0.);
     else if (lot < types.slit_fraction + types.gapped_fraction)
     {
-      // Box and Muller; 1 - u is never 0.
-      const double u = 1. - random.uniform(), v = random.uniform();
-      const double normal = std::sqrt(-2. * std::log(u)) * std::cos(2. * M_PI * v);
       const double mean = types.gap_ratio * mean_radius;
-      unbond(joints, j, std::max(0., mean * (1. + types.gap_deviation * normal)));
+      unbond(joints, j,
+             std::max(0., mean * (1. + types.gap_deviation * random.normal())));
     }
+  }
+}
+
+void scatter_strengths(Joints &joints,
+                       const std::size_t group,
+                       const StrengthScatter &scatter,
+                       const std::uint64_t seed)
+{
+  joints.tension_factor.resize(joints.size(), 1.);
+  joints.cohesion_factor.resize(joints.size(), 1.);
+  for (std::size_t j = joints.groups[group].begin; j < joints.groups[group].end; ++j)
+  {
+    Random random = random_of_joint(joints, j, seed, stream_of_strengths);
+    joints.tension_factor[j] = draw_factor(random, scatter.tension);
+    joints.cohesion_factor[j] = draw_factor(random, scatter.cohesion);
   }
 }
 } // namespace antiform::discrete

@@ -27,4 +27,20 @@ void unbond_some(Joints &joints,
                  const JointTypes &types,
                  double mean_radius,
                  std::uint64_t seed);
+
+/// Standard deviations of a joint's strengths over their means.
+struct StrengthScatter
+{
+  double tension = 0.;  ///< of the tensile strength [-]
+  double cohesion = 0.; ///< [-]
+  bool any() const { return tension > 0. || cohesion > 0.; }
+};
+
+/// Give each joint of @p group strengths of its own, both drawn independently: normal,
+/// within three deviations and above a twentieth of the mean. A joint's lot depends on
+/// the numbers of its grains and on @p seed alone; all of its elements share it.
+void scatter_strengths(Joints &joints,
+                       std::size_t group,
+                       const StrengthScatter &scatter,
+                       std::uint64_t seed);
 } // namespace antiform::discrete

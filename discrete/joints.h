@@ -171,6 +171,9 @@ struct Joints
   std::vector<double> stiffness;        ///< k_n, stress per opening [Pa/m]
   std::vector<double> half_length;      ///< R of the interface [m]
   std::vector<double> weight; ///< bridging weight of force and energy [-]; empty: all 1
+  /// Strengths of the joint over those of its group's law; both empty without scatter.
+  std::vector<double> tension_factor;  ///< of the tensile strength [-]
+  std::vector<double> cohesion_factor; ///< [-]
   /// Deformation that the prestress stands for; all three empty without prestress.
   std::vector<double> initial_gap;      ///< [m]
   std::vector<double> initial_shear;    ///< [m]

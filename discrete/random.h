@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace antiform::discrete
@@ -19,6 +20,13 @@ public:
   double uniform()
   {
     return static_cast<double>(mixed(key_ + increment * ++counter_) >> 11) * 0x1p-53;
+  }
+
+  /// Next number, of the standard normal distribution (Box and Muller: two uniform ones).
+  double normal()
+  {
+    const double u = 1. - uniform(), v = uniform(); // 1 - u is never 0
+    return std::sqrt(-2. * std::log(u)) * std::cos(2. * M_PI * v);
   }
 
 private:

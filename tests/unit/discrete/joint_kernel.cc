@@ -1,4 +1,5 @@
 #include "discrete/joint_kernel.h"
+#include "discrete/joint_types.h"
 
 #include "support/grain_fixtures.h"
 #include "support/plain_joint.h"
@@ -78,6 +79,8 @@ KernelResult run_kernel(const KernelLevel &level, Sample &sample)
   in.initial_gap = pointer(joints.initial_gap);
   in.initial_shear = pointer(joints.initial_shear);
   in.initial_rotation = pointer(joints.initial_rotation);
+  in.tension_factor = pointer(joints.tension_factor);
+  in.cohesion_factor = pointer(joints.cohesion_factor);
   in.shear_ratio = 1. / 2.2;
   in.moment_factor = 1. / 12.;
   in.tension_arm = in.coulomb_arm = 2. / 3.;
@@ -150,8 +153,15 @@ TEST(IntactKernel, EveryLevelOfThisProcessorGivesTheSameBits)
       for (const bool prestress : {false, true})
       {
         Sample sample = moved_sample(1e-3, turn, 3, weights, prestress);
-        const KernelResult plain = run_kernel(levels.front(), sample);
+        KernelResult plain = run_kernel(levels.front(), sample);
         ASSERT_GT(plain.over.size(), 10u); // the lists that are compared are not empty
+        if (weights) // scatter changes who is over its strength, and nothing else
+        {
+          const std::vector<std::int32_t> without_scatter = plain.over;
+          scatter_strengths(sample.joints, 0, {0.4, 0.4}, 3);
+          plain = run_kernel(levels.front(), sample);
+          EXPECT_NE(plain.over, without_scatter);
+        }
         for (const KernelLevel &level : levels)
         {
           const KernelResult other = run_kernel(level, sample);

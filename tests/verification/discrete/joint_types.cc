@@ -133,4 +133,102 @@ TEST(JointTypes, SharesAreThoseAskedForAndBelongToThePair)
   EXPECT_EQ(again.joints.initial_gap, sample.joints.initial_gap);
   EXPECT_NE(other.joints.damage, sample.joints.damage);
 }
+
+TEST(StrengthScatter, IsNormalBelongsToThePairAndComesOfTheSeed)
+{
+  Sample sample;
+  sample.grains = random_pack(60, 60, 5);
+  bond_all(sample, strong_law());
+  Joints &joints = sample.joints;
+  scatter_strengths(joints, 0, {0.2, 0.1}, 11);
+  const double n = static_cast<double>(joints.size());
+  ASSERT_GT(n, 9000.);
+  const auto moments = [n](const std::vector<double> &factor)
+  {
+    double sum = 0., squares = 0.;
+    for (const double f : factor)
+    {
+      EXPECT_GT(f, 0.);
+      sum += f;
+      squares += f * f;
+    }
+    const double mean = sum / n;
+    return std::pair{mean, std::sqrt(squares / n - mean * mean)};
+  };
+  // Cut at three deviations a normal has 0.9866 of its deviation; four standard errors.
+  const auto [tension, tension_deviation] = moments(joints.tension_factor);
+  EXPECT_NEAR(tension, 1., 4. * 0.2 / std::sqrt(n));
+  EXPECT_NEAR(tension_deviation, 0.9866 * 0.2, 4. * 0.2 / std::sqrt(2. * n));
+  const auto [cohesion, cohesion_deviation] = moments(joints.cohesion_factor);
+  EXPECT_NEAR(cohesion, 1., 4. * 0.1 / std::sqrt(n));
+  EXPECT_NEAR(cohesion_deviation, 0.9866 * 0.1, 4. * 0.1 / std::sqrt(2. * n));
+  double product = 0.; // independent of one another
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    product += (joints.tension_factor[j] - 1.) * (joints.cohesion_factor[j] - 1.);
+  EXPECT_NEAR(product / (n * 0.2 * 0.1), 0., 4. / std::sqrt(n));
+
+  Sample swapped = sample;
+  std::swap(swapped.joints.first, swapped.joints.second);
+  scatter_strengths(swapped.joints, 0, {0.2, 0.1}, 11);
+  EXPECT_EQ(swapped.joints.tension_factor, joints.tension_factor);
+  scatter_strengths(swapped.joints, 0, {0.2, 0.1}, 12);
+  EXPECT_NE(swapped.joints.tension_factor, joints.tension_factor);
+}
+
+// Closed forms of case 10 with the joint's own strengths: a pull breaks it at factor x
+// sigma_b, a shear without pressure at factor x c_b.
+TEST(StrengthScatter, MovesTheStrengthsOfEachLaw)
+{
+  FlatJoint flat = strong_law();
+  flat.tensile_strength = 1.;
+  flat.cohesion = 2.;
+  ParallelBond parallel;
+  parallel.bond_modulus = 1e3;
+  parallel.tensile_strength = 1.;
+  parallel.cohesion = 2.;
+  ContactBond glued;
+  glued.effective_modulus = 1e3;
+  glued.tensile_strength = 1.;
+  glued.shear_strength = 2.;
+  for (const JointLaw &law : {JointLaw{flat}, JointLaw{parallel}, JointLaw{glued}})
+    for (const double factor : {0.5, 1.5})
+    {
+      const auto make = [&]
+      {
+        Sample pair = bonded_pair(law);
+        pair.joints.tension_factor = {factor};
+        pair.joints.cohesion_factor = {factor};
+        return pair;
+      };
+      Sample pulled = make();
+      const double k = pulled.joints.stiffness[0], to_break = factor * 1. / k;
+      load(pulled, {0.999 * to_break, 0., 0.});
+      EXPECT_TRUE(pulled.cracks.empty());
+      load(pulled, {1.001 * to_break, 0., 0.});
+      EXPECT_FALSE(pulled.cracks.empty());
+      Sample sheared = make();
+      const double to_shear = factor * 2. / (k / constants(law).stiffness_ratio);
+      load(sheared, {0., 0.999 * to_shear, 0.});
+      EXPECT_TRUE(sheared.cracks.empty());
+      load(sheared, {0., 1.001 * to_shear, 0.});
+      ASSERT_FALSE(sheared.cracks.empty());
+      EXPECT_EQ(sheared.cracks.front().mode, Bond::broken_in_shear);
+    }
+}
+
+TEST(StrengthScatter, StaysWithAJointThatHasLostAnElement)
+{
+  FlatJoint flat = strong_law();
+  flat.tensile_strength = 1.;
+  flat.cohesion = 2.;
+  Sample pair = bonded_pair(flat);
+  pair.joints.tension_factor = {1.5};
+  pair.joints.cohesion_factor = {1.5};
+  break_element(pair.grains, pair.joints, 0, 0, Bond::broken_in_tension);
+  const double k = pair.joints.stiffness[0];
+  load(pair, {1.499 / k, 0., 0.});
+  EXPECT_TRUE(pair.cracks.empty());
+  load(pair, {1.501 / k, 0., 0.});
+  EXPECT_EQ(pair.cracks.size(), 2u);
+}
 } // namespace antiform::discrete::test
