@@ -130,16 +130,30 @@ double after_search(Scene &scene)
 
 namespace
 {
-/// Step of the softest region at its real masses: nothing there need be made heavier.
+/// Half of the stable step of a free grain, for which the others are made heavier: that of
+/// the softest region at its real masses. Of the layer, the stiffest region, the mean
+/// counts: its least grain would make all others step for it alone.
 double softest_step(const Scene &scene, const StiffnessSums &sums)
 {
   const discrete::Grains &grains = scene.grains->state.grains;
-  std::vector<double> least(scene.grains->modulus.size(),
+  std::vector<double> steps(scene.grains->modulus.size(),
                             std::numeric_limits<double>::infinity());
+  double sum = 0., n = 0.;
   for (std::size_t i = 0; i < grains.size(); ++i)
-    least[grains.region[i]] =
-        std::min(least[grains.region[i]], grains.mass[i] / sums.translation[i]);
-  return std::sqrt(*std::max_element(least.begin(), least.end()));
+  {
+    if (!(sums.translation[i] > 0.))
+      continue; // nothing holds it
+    const double step = std::sqrt(grains.mass[i] / sums.translation[i]);
+    if (grains.region[i] == layer_region)
+    {
+      sum += step;
+      n += 1.;
+    }
+    else
+      steps[grains.region[i]] = std::min(steps[grains.region[i]], step);
+  }
+  steps[layer_region] = n > 0. ? sum / n : 0.;
+  return *std::max_element(steps.begin(), steps.end());
 }
 } // namespace
 
