@@ -59,10 +59,11 @@ std::vector<Effect> list_effects(const Parameters &p)
     list.push_back({"contacts", State::present, why});
     list.push_back({"search", State::present, why});
   }
-  else if (p.has("fractures"))
+  else if (p.has_smooth_joints())
   {
-    list.push_back({"contacts", State::present, "blocks between fractures may meet"});
-    list.push_back({"search", State::present, "grains slide along fractures"});
+    const std::string what = p.has("fractures") ? "fractures" : "beds";
+    list.push_back({"contacts", State::present, "blocks between " + what + " may meet"});
+    list.push_back({"search", State::present, "grains slide along " + what});
   }
   else if (slips)
   {
@@ -74,8 +75,10 @@ std::vector<Effect> list_effects(const Parameters &p)
     list.push_back(at_breakage("contacts", "loose grains meet"));
     list.push_back(at_breakage("search", "loose grains move"));
   }
-  list.push_back(choose("smooth joints", grains && p.has("fractures"),
-                        "fractures are listed in Components", "not listed in Components"));
+  list.push_back(choose("smooth joints", grains && p.has_smooth_joints(),
+                        p.has("fractures") ? "fractures are listed in Components"
+                                           : "beds slide on one another",
+                        "no fractures are listed in Components, and no beds that slide"));
   list.push_back(choose("mesh", mesh, "the matrix is continuum",
                         "no part of the section is continuum"));
   list.push_back(choose("bridging domain", p.is_bridged() && p.bridging.constraint,

@@ -60,7 +60,7 @@ double FoldGauge::mean_uplift(const double x_reference, const double half_width)
   {
     const discrete::Grains &grains = scene_.grains->state.grains;
     for (std::size_t i = 0; i < grains.size(); ++i)
-      if (grains.region[i] == layer_region &&
+      if (is_layer(grains.region[i]) &&
           std::abs(grains.reference_x[i] - x_reference) <= half_width)
       {
         sum += grains.displacement_y[i];

@@ -1,5 +1,6 @@
 #include "cases/grain_section.h"
 
+#include "cases/beds.h"
 #include "cases/fracture_list.h"
 #include "cases/layer_packing.h"
 
@@ -108,7 +109,7 @@ connected_grains(const std::size_t n,
     parent[root(i)] = root(j);
   std::int32_t layer = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (grains.region[i] == layer_region)
+    if (is_layer(grains.region[i]))
     {
       layer = static_cast<std::int32_t>(i);
       break;
@@ -123,13 +124,45 @@ using Pairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
 
 struct AllPairs
 {
-  Pairs layer, interface, matrix;
+  /// Of the grains of each bed, then of each two beds.
+  struct OfBeds
+  {
+    int one, other;
+    Pairs pairs;
+  };
+  std::vector<OfBeds> layer;
+  Pairs interface, matrix;
+
+  Pairs all() const
+  {
+    Pairs any;
+    for (const OfBeds &beds : layer)
+      any.insert(any.end(), beds.pairs.begin(), beds.pairs.end());
+    any.insert(any.end(), interface.begin(), interface.end());
+    any.insert(any.end(), matrix.begin(), matrix.end());
+    return any;
+  }
 };
-AllPairs find_pairs(const Grains &grains, const double layer_gap, const double matrix_gap)
+AllPairs find_pairs(const Grains &grains,
+                    const Parameters &p,
+                    const double layer_gap,
+                    const double matrix_gap)
 {
-  return {pairs_within(grains, layer_gap, layer_region, layer_region),
-          pairs_within(grains, matrix_gap, layer_region, matrix_region),
-          pairs_within(grains, matrix_gap, matrix_region, matrix_region)};
+  AllPairs all;
+  const auto add = [&](const int one, const int other)
+  {
+    all.layer.push_back({one, other,
+                         pairs_within(grains, layer_gap, bed_region(one),
+                                      bed_region(other))});
+  };
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    add(bed, bed);
+  for (int one = 0; one < p.n_beds(); ++one)
+    for (int other = one + 1; other < p.n_beds(); ++other)
+      add(one, other);
+  all.interface = pairs_with_matrix(grains, matrix_gap, p);
+  all.matrix = pairs_within(grains, matrix_gap, matrix_region, matrix_region);
+  return all;
 }
 
 /// Number the grains by x, so that neighbours in space are neighbours in memory.
@@ -143,8 +176,8 @@ void number_grains(std::vector<Placed> placed, const Parameters &p, GrainSection
   for (const Placed &one : placed)
   {
     section.state.grains.add(one.disk.centre, one.disk.radius,
-                             one.region == layer_region ? p.layer.grain_density
-                                                        : p.matrix.grain_density,
+                             is_layer(one.region) ? p.bed(bed_of(one.region)).grain_density
+                                                  : p.matrix.grain_density,
                              one.region);
     section.tile_grain.push_back(one.tile_grain);
   }
@@ -175,7 +208,20 @@ void bond(GrainSection &section,
         joints.add(grains, i, j, one, two);
     }
   };
-  add(pairs.layer, p.layer.law(), layer_region, "layer", {joint_modulus(p.layer.law())});
+  std::vector<double> bonds = section.modulus; // without the contacts beside them
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    bonds[bed_region(bed)] = joint_modulus(p.bed(bed).law());
+  for (const AllPairs::OfBeds &beds : pairs.layer)
+    if (beds.one == beds.other)
+      add(beds.pairs, p.bed(beds.one).law(), bed_region(beds.one),
+          p.n_beds() == 1 ? "layer" : "bed " + std::to_string(beds.one + 1), bonds);
+    else if (!beds.pairs.empty())
+    {
+      const bool first = p.bed(beds.one).joint.tensile_strength <=
+                         p.bed(beds.other).joint.tensile_strength;
+      add(beds.pairs, joint_between(p.bed(beds.one), p.bed(beds.other)),
+          bed_region(first ? beds.one : beds.other), "bedding", bonds);
+    }
   if (section.matrix)
   {
     const FlatJoint &law = section.matrix->law;
@@ -184,13 +230,26 @@ void bond(GrainSection &section,
     add(pairs.matrix, law, matrix_region, "matrix", section.modulus);
   }
   joints.finish(grains.size());
-  if (!p.has("fractures"))
+  if (!p.has_smooth_joints())
     return;
   section.smooth = make_smooth_joints(grains, std::move(fractures), crossed);
   section.smooth->effective_modulus = section.modulus[layer_region];
   section.smooth->stiffness_ratio = constants(p.layer.law()).stiffness_ratio;
 }
 } // namespace
+
+std::vector<std::pair<std::int32_t, std::int32_t>>
+pairs_with_matrix(const Grains &grains, const double gap, const Parameters &p)
+{
+  Pairs all;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+  {
+    const Pairs pairs = pairs_within(grains, gap, bed_region(bed), matrix_region);
+    all.insert(all.end(), pairs.begin(), pairs.end());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
 
 MatrixRock make_matrix_rock(const Parameters &p, const Progress &progress)
 {
@@ -218,18 +277,22 @@ GrainSection make_grains(const Parameters &p,
                          const Progress &progress)
 {
   GrainSection section;
-  section.modulus.push_back(joint_modulus(p.layer.law()) +
-                            (has_contact_beside(p.layer.law())
-                                 ? p.layer.grain_contact().effective_modulus
-                                 : 0.));
+  section.modulus.resize(
+      std::max<std::size_t>(bed_region(p.n_beds() - 1) + 1, p.has("matrix") ? 2 : 1), 0.);
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    section.modulus[bed_region(bed)] =
+        joint_modulus(p.bed(bed).law()) +
+        (has_contact_beside(p.bed(bed).law()) ? p.bed(bed).grain_contact().effective_modulus
+                                              : 0.);
   section.mean_radius = 0.5 * p.grain_diameter();
   std::vector<Placed> placed;
   progress("packing the layer");
   const LayerPacking packed = make_layer_packing(p, geometry, progress);
   const Packing &layer = packed.packing;
   section.layer_quality = layer.quality;
+  const BedPlanes planes(p, geometry);
   for (const Disk &disk : layer.disks)
-    placed.push_back({disk, layer_region, -1});
+    placed.push_back({disk, bed_region(planes.bed_at(disk.centre)), -1});
   const double layer_gap = packed.installation_gap;
   section.installation_gap = layer_gap;
   double matrix_gap = 0.;
@@ -237,7 +300,7 @@ GrainSection make_grains(const Parameters &p,
   {
     progress("packing the matrix");
     section.matrix = make_matrix_rock(p, progress);
-    section.modulus.push_back(section.matrix->law.effective_modulus);
+    section.modulus[matrix_region] = section.matrix->law.effective_modulus;
     matrix_gap = section.matrix->installation_gap;
     for (const Placed &one : place_matrix(*section.matrix, geometry, layer.disks, holds))
       placed.push_back(one);
@@ -245,11 +308,8 @@ GrainSection make_grains(const Parameters &p,
 
   number_grains(placed, p, section);
   const Grains &all = section.state.grains;
-  AllPairs pairs = find_pairs(all, layer_gap, matrix_gap);
-  Pairs any = pairs.layer;
-  any.insert(any.end(), pairs.interface.begin(), pairs.interface.end());
-  any.insert(any.end(), pairs.matrix.begin(), pairs.matrix.end());
-  const std::vector<char> keep = connected_grains(all.size(), any, all);
+  AllPairs pairs = find_pairs(all, p, layer_gap, matrix_gap);
+  const std::vector<char> keep = connected_grains(all.size(), pairs.all(), all);
   section.removed_grains =
       static_cast<std::size_t>(std::count(keep.begin(), keep.end(), char(0)));
   if (section.removed_grains > 0)
@@ -260,16 +320,28 @@ GrainSection make_grains(const Parameters &p,
         kept.push_back(
             {{all.reference(i), all.radius[i]}, all.region[i], section.tile_grain[i]});
     number_grains(kept, p, section);
-    pairs = find_pairs(all, layer_gap, matrix_gap);
+    pairs = find_pairs(all, p, layer_gap, matrix_gap);
   }
   progress("bonding");
-  bond(section, p, pairs,
-       p.has("fractures") ? make_fractures(p, geometry) : std::vector<Fracture>{});
+  std::vector<Fracture> fractures;
+  if (p.has("fractures"))
+    fractures = make_fractures(p, geometry);
+  if (p.has("beds") && p.beds.interface == "frictional")
+  {
+    SmoothJoint bedding;
+    bedding.friction = p.beds.friction;
+    for (const Fracture &trace : planes.traces(bedding))
+      fractures.push_back(trace);
+  }
+  bond(section, p, pairs, std::move(fractures));
   const auto seed = static_cast<std::uint64_t>(p.layer.seed);
-  if (p.layer.scatter.any())
-    scatter_strengths(section.state.joints, 0, p.layer.scatter, seed);
-  if (p.has_unbonded_joints())
-    unbond_some(section.state.joints, 0, p.layer.types, section.mean_radius, seed);
+  for (int bed = 0; bed < p.n_beds(); ++bed) // its group has its number
+  {
+    if (p.bed(bed).scatter.any())
+      scatter_strengths(section.state.joints, bed, p.bed(bed).scatter, seed);
+    if (p.has_unbonded_joints())
+      unbond_some(section.state.joints, bed, p.bed(bed).types, section.mean_radius, seed);
+  }
   return section;
 }
 

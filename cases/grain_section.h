@@ -18,9 +18,21 @@ namespace antiform::cases
 /// Regions of grains, as Grains::region has them.
 enum Region
 {
-  layer_region = 0,
+  layer_region = 0, ///< or its lowest bed; the other beds follow the matrix
   matrix_region = 1
 };
+inline int bed_region(const int bed)
+{
+  return bed == 0 ? int(layer_region) : matrix_region + bed;
+}
+inline int bed_of(const int region)
+{
+  return region == layer_region ? 0 : region - matrix_region;
+}
+inline bool is_layer(const int region)
+{
+  return region != matrix_region;
+}
 
 /// The matrix as grains: a periodic tile with the wanted moduli.
 struct MatrixRock
@@ -59,6 +71,11 @@ GrainSection make_grains(const Parameters &parameters,
                          const SectionGeometry &geometry,
                          const std::function<bool(const Vec2 &)> &holds,
                          const Progress &progress);
+
+/// Pairs of a grain of the layer and one of the matrix at most @p gap [m] apart,
+/// ascending.
+std::vector<std::pair<std::int32_t, std::int32_t>>
+pairs_with_matrix(const discrete::Grains &grains, double gap, const Parameters &parameters);
 
 /// Candidates of the section's contacts, fractures having the first say. Throws
 /// std::invalid_argument for grains whose centres coincide.

@@ -136,24 +136,22 @@ namespace
 double softest_step(const Scene &scene, const StiffnessSums &sums)
 {
   const discrete::Grains &grains = scene.grains->state.grains;
-  std::vector<double> steps(scene.grains->modulus.size(),
-                            std::numeric_limits<double>::infinity());
-  double sum = 0., n = 0.;
+  double sum = 0., n = 0., matrix = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
     if (!(sums.translation[i] > 0.))
       continue; // nothing holds it
     const double step = std::sqrt(grains.mass[i] / sums.translation[i]);
-    if (grains.region[i] == layer_region)
+    if (is_layer(grains.region[i]))
     {
       sum += step;
       n += 1.;
     }
     else
-      steps[grains.region[i]] = std::min(steps[grains.region[i]], step);
+      matrix = std::min(matrix, step);
   }
-  steps[layer_region] = n > 0. ? sum / n : 0.;
-  return *std::max_element(steps.begin(), steps.end());
+  const double layer = n > 0. ? sum / n : 0.;
+  return std::isinf(matrix) ? layer : std::max(layer, matrix);
 }
 } // namespace
 
@@ -192,15 +190,14 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
 double layer_transit(const Scene &scene)
 {
   const Parameters &p = scene.parameters;
-  const double modulus =
-      p.layer.young_modulus / (1. - p.layer.poisson_ratio * p.layer.poisson_ratio);
+  const double modulus = p.plane_modulus();
   double density = 0.84 * p.layer.grain_density;
   if (scene.grains)
   {
     const discrete::Grains &grains = scene.grains->state.grains;
     double mass = 0.;
     for (std::size_t i = 0; i < grains.size(); ++i)
-      if (grains.region[i] == layer_region)
+      if (is_layer(grains.region[i]))
         mass += 1. / grains.inverse_mass[i];
     density = mass / (scene.geometry.length() * scene.geometry.thickness());
   }

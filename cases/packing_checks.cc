@@ -46,7 +46,7 @@ void check_packing(const Parameters &p, std::vector<Finding> &findings)
     findings.push_back({{entry, "Layer/Porosity"},
                         "grains that are apart press on nothing. Give 0 for one of the "
                         "two."});
-  if (p.layer.bond_model != "flat joint" || p.has("fractures"))
+  if (p.layer.bond_model != "flat joint" || p.has_smooth_joints())
     findings.push_back({{entry, "Layer/Bond model", "Components"},
                         "only flat joints keep a locked-in stress, and no fracture does. "
                         "Give 0."});

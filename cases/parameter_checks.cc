@@ -1,4 +1,5 @@
 // What a scene is made of and what cannot go together in it.
+#include "cases/beds.h"
 #include "cases/deck_reader.h"
 #include "cases/declarations.h"
 #include "cases/fracture_list.h"
@@ -371,6 +372,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_matrix(p, findings);
   if (p.is_bridged())
     check_bridging(p, findings);
+  if (p.has("layer") && p.has("beds"))
+    check_beds(p, findings);
   check_run(p, findings);
   if (p.has("layer") && p.has("fractures"))
     check_fractures(p, findings);
@@ -436,17 +439,48 @@ bool Parameters::has(const std::string &component) const
   return std::find(components.begin(), components.end(), component) != components.end();
 }
 
+double Parameters::bed_share(const int k) const
+{
+  if (!has("beds"))
+    return 1.;
+  double sum = 0.;
+  for (const double ratio : beds.thickness_ratios)
+    sum += ratio;
+  return beds.thickness_ratios.at(static_cast<std::size_t>(k)) / sum;
+}
+
+double Parameters::plane_modulus() const
+{
+  const auto of = [](const LayerParameters &rock)
+  { return rock.young_modulus / (1. - rock.poisson_ratio * rock.poisson_ratio); };
+  if (!has("beds"))
+    return of(layer);
+  double sum = 0.;
+  for (int k = 0; k < n_beds(); ++k)
+    sum += bed_share(k) * of(bed(k));
+  return sum;
+}
+
+bool Parameters::has_smooth_joints() const
+{
+  return has("fractures") || (has("beds") && beds.interface == "frictional");
+}
+
 bool Parameters::has_unbonded_joints() const
 {
-  return has("layer") && layer.representation == "grains" &&
-         layer.bond_model == "flat joint" &&
-         layer.types.slit_fraction + layer.types.gapped_fraction > 0.;
+  if (!has("layer") || layer.representation != "grains" ||
+      layer.bond_model != "flat joint")
+    return false;
+  for (int k = 0; k < n_beds(); ++k)
+    if (bed(k).types.slit_fraction + bed(k).types.gapped_fraction > 0.)
+      return true;
+  return false;
 }
 
 bool Parameters::has_contacts_from_start() const
 {
   return has("layer") && layer.representation == "grains" &&
-         (discrete::has_contact_beside(layer.law()) || has("fractures") ||
+         (discrete::has_contact_beside(layer.law()) || has_smooth_joints() ||
           (has("matrix") && matrix.interface == "frictionless"));
 }
 

@@ -71,6 +71,26 @@ void declare(MatrixParameters &matrix, Declarations &entries)
   entries.leave();
 }
 
+void declare(BedsParameters &beds, Declarations &entries)
+{
+  entries.enter("Beds");
+  entries.numbers("Thickness ratios", beds.thickness_ratios,
+                  "Thickness of each bed, from below; only their ratios count, together "
+                  "they are the layer [-].",
+                  Number::above(0.));
+  entries.list("Rocks", beds.rocks,
+               "A rock file (.prm, looked for from the deck) for each bed, from below: its "
+               "moduli, strengths and density. Grain sizes are those of the layer.");
+  entries.choice("Interface", beds.interface,
+                 "Between beds: cemented (by joints with the weaker rock's strengths), or "
+                 "frictional (smooth joints along the bedding).",
+                 "cemented|frictional");
+  entries.number("Friction", beds.friction,
+                 "mu between frictional beds; 0: they slide freely [-].",
+                 Number::at_least(0.));
+  entries.leave();
+}
+
 void declare(BridgingParameters &bridging, Declarations &entries)
 {
   entries.enter("Bridging domain");
@@ -241,7 +261,7 @@ void declare_one(const std::string &name,
 const std::vector<std::string> &all_components()
 {
   static const std::vector<std::string> names = {
-      "layer",       "matrix",      "foundation",
+      "layer",       "beds",        "matrix",      "foundation",
       "surface pressure", "gravity", "walls",
       "servo walls", "membrane", "fractures",   "damping",
       "measurement circles", "calibration"};
@@ -252,6 +272,7 @@ const std::vector<Section> &all_sections()
 {
   static const std::vector<Section> sections = {
       {"Layer", "component layer"},
+      {"Beds", "component beds"},
       {"Matrix", "component matrix"},
       {"Bridging domain", "the layer is grains and the matrix is continuum"},
       {"Foundation", "component foundation"},
@@ -287,7 +308,7 @@ void declare_parameters(Parameters &p,
   entries.text("Title", p.title, "What the run is called in its output.");
   entries.list(
       "Components", p.components,
-      "What exists in the scene, a list: layer, matrix, foundation, surface "
+      "What exists in the scene, a list: layer, beds, matrix, foundation, surface "
       "pressure, gravity, walls, servo walls, membrane, fractures, damping, "
       "measurement circles; "
       "calibration for 'antiform calibrate'. Only their sections are read.");
@@ -295,6 +316,8 @@ void declare_parameters(Parameters &p,
   {
     if (section == "Layer")
       declare(p.layer, entries);
+    else if (section == "Beds")
+      declare(p.beds, entries);
     else if (section == "Matrix")
       declare(p.matrix, entries);
     else if (section == "Bridging domain")

@@ -1,4 +1,5 @@
 #include "cases/parameters.h"
+#include "cases/beds.h"
 #include "cases/deck_reader.h"
 #include "cases/declarations.h"
 
@@ -84,6 +85,12 @@ public:
 
     find_data("Calibration/Laboratory data", p.calibration.data);
     find_data("Fractures/Table", p.fractures.table);
+    if (p.has("beds"))
+      for (std::string &rock : p.beds.rocks)
+      {
+        find_data("Beds/Rocks", rock);
+        p.beds.layers.push_back(read_rock(rock, p.layer, problems_));
+      }
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())

@@ -66,6 +66,16 @@ struct LayerParameters
   discrete::LinearContact grain_contact() const;
 };
 
+/// The layer as a stack of beds, each with a rock of its own.
+struct BedsParameters
+{
+  std::vector<double> thickness_ratios = {1., 1., 1.}; ///< from below; shares of h
+  std::vector<std::string> rocks;                      ///< a file (.prm) each, from below
+  std::string interface = "cemented";                  ///< cemented | frictional
+  double friction = 0.6;                               ///< mu between frictional beds
+  std::vector<LayerParameters> layers; ///< what the files say, the rest as the layer
+};
+
 /// The weak rock around the layer.
 struct MatrixParameters
 {
@@ -229,6 +239,7 @@ struct Parameters
   std::string title;
   std::vector<std::string> components;
   LayerParameters layer;
+  BedsParameters beds;
   MatrixParameters matrix;
   BridgingParameters bridging;
   FoundationParameters foundation;
@@ -245,6 +256,18 @@ struct Parameters
   CalibrationParameters calibration;
 
   bool has(const std::string &component) const;
+  /// Beds of the layer, from below; one without the component beds.
+  int n_beds() const { return has("beds") ? static_cast<int>(beds.layers.size()) : 1; }
+  const LayerParameters &bed(const int k) const
+  {
+    return has("beds") ? beds.layers.at(static_cast<std::size_t>(k)) : layer;
+  }
+  /// Share of bed @p k in the layer's thickness [-].
+  double bed_share(int k) const;
+  /// E/(1 - nu^2) of the layer, the mean of its beds [Pa].
+  double plane_modulus() const;
+  /// Fractures, or beds that slide.
+  bool has_smooth_joints() const;
   /// The layer has joints that begin without bonds.
   bool has_unbonded_joints() const;
   /// Linear contacts act before anything has broken.

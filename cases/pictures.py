@@ -26,11 +26,12 @@ from matplotlib.patches import Patch, Rectangle  # noqa: E402
 from run_files import Run, RunError  # noqa: E402
 
 LAYER_COLOUR, MATRIX_COLOUR = "#a9a9a9", "#e4e4e4"
+BED_COLOURS = (LAYER_COLOUR, "#cbb994", "#93a5b5")  # from below, and again
 MESH_COLOUR, MESH_EDGE = "#f7f3e8", "#d5cbb0"
 TENSION_CRACK, SHEAR_CRACK = "#d7191c", "black"
 FRACTURE = "#08519c"
 COMPRESSION, TENSION = "#1f4fa8", "#1a9641"
-COMPETENT_REGION = 0
+MATRIX_REGION = 1  # the layer, or its beds, are 0, 2, 3, ...
 BROKEN_IN_TENSION = 1  # code of the field "mode"; 2 is broken in shear
 
 LEFT, RIGHT, BELOW, ABOVE, BETWEEN, BESIDE = 0.8, 0.9, 0.6, 1.05, 0.7, 1.9  # [inch]
@@ -55,7 +56,17 @@ def is_layer(frame):
     region = frame.grains.field("region")
     if region is None:
         return np.ones(len(frame.grains.points), dtype=bool)
-    return region == COMPETENT_REGION
+    return region != MATRIX_REGION
+
+
+def beds(frame):
+    """Number from below and grains of each bed of the layer; one where there is no stack."""
+    layer = is_layer(frame)
+    region = frame.grains.field("region")
+    if region is None:
+        return [(0, layer)]
+    return [(0 if number == 0 else int(number) - MATRIX_REGION, region == number)
+            for number in np.unique(region[layer])]
 
 
 def whole_box(frame):
@@ -223,7 +234,10 @@ def draw_mesh(axes, frame, values=None, norm=None, cmap=None):
 def layer_colours(frame):
     if frame.grains is None:
         return None
-    return np.where(is_layer(frame), LAYER_COLOUR, MATRIX_COLOUR)
+    colours = np.full(len(frame.grains.points), MATRIX_COLOUR)
+    for bed, chosen in beds(frame):
+        colours[chosen] = BED_COLOURS[bed % len(BED_COLOURS)]
+    return colours
 
 
 def mark_zoom(figure, zoom):
@@ -264,11 +278,13 @@ def fracture_map(run, frame, path):
         handles.append(Line2D([], [], color=FRACTURE, linewidth=2.5,
                               label="pre-existing fractures"))
     if frame.grains is not None:
-        layer = is_layer(frame)
-        for chosen, colour, name in ((layer, LAYER_COLOUR, "competent layer"),
-                                     (~layer, MATRIX_COLOUR, "matrix grains")):
-            if chosen.any():
-                handles.append(Patch(facecolor=colour, label=name))
+        stack = beds(frame)
+        for bed, _ in stack:
+            handles.append(Patch(facecolor=BED_COLOURS[bed % len(BED_COLOURS)],
+                                 label="competent layer" if len(stack) == 1
+                                 else f"bed {bed + 1}"))
+        if not is_layer(frame).all():
+            handles.append(Patch(facecolor=MATRIX_COLOUR, label="matrix grains"))
     if frame.continuum is not None:
         handles.append(Patch(facecolor=MESH_COLOUR, edgecolor=MESH_EDGE,
                              label="finite elements"))

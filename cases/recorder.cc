@@ -93,7 +93,8 @@ Recorder::Sample Recorder::measure() const
     double matrix = scene_.wall_motion->mesh_reaction() - layer;
     if (scene_.grains)
     {
-      layer += scene_.wall_motion->grain_reaction(layer_region);
+      for (int bed = 0; bed < scene_.parameters.n_beds(); ++bed)
+        layer += scene_.wall_motion->grain_reaction(bed_region(bed));
       matrix += scene_.wall_motion->grain_reaction(matrix_region);
     }
     sample.wall_force = layer + matrix;

@@ -320,7 +320,7 @@ void Scene::add_breakage_components()
                   [](const discrete::JointGroup &group)
                   {
                     return !discrete::is_brittle(group.law) &&
-                           (group.flat().breakable || group.layer == layer_region);
+                           (group.flat().breakable || is_layer(group.layer));
                   });
   if (flat_joints_break)
     simulation->add(std::make_unique<BrokenJoints>(state), {Stage::forces}, rank_broken,

@@ -1,0 +1,142 @@
+#include "cases/beds.h"
+
+#include "cases/deck_reader.h"
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+BedPlanes::BedPlanes(const Parameters &p, const SectionGeometry &geometry)
+    : x_min_(geometry.x_min())
+    , thickness_(geometry.thickness())
+{
+  // Short enough to follow the fold to a hundredth of a grain or so, long enough for
+  // several pairs of grains.
+  const auto n = static_cast<std::size_t>(
+      std::ceil(geometry.length() / (4. * geometry.diameter())));
+  chord_ = geometry.length() / static_cast<double>(n);
+  for (std::size_t k = 0; k <= n; ++k)
+    bottom_.push_back(
+        geometry.layer_bottom(x_min_ + static_cast<double>(k) * chord_));
+  double below = 0.;
+  for (int k = 0; k + 1 < p.n_beds(); ++k)
+    shares_.push_back(below += p.bed_share(k));
+}
+
+double BedPlanes::bottom(const double x) const
+{
+  const double place = (x - x_min_) / chord_;
+  const auto last = static_cast<double>(bottom_.size() - 2);
+  const double k = std::clamp(std::floor(place), 0., last);
+  const auto i = static_cast<std::size_t>(k);
+  return bottom_[i] + (place - k) * (bottom_[i + 1] - bottom_[i]);
+}
+
+int BedPlanes::bed_at(const Vec2 &place) const
+{
+  const double share = (place.y - bottom(place.x)) / thickness_;
+  return static_cast<int>(
+      std::count_if(shares_.begin(), shares_.end(),
+                    [share](const double below) { return share > below; }));
+}
+
+std::vector<discrete::Fracture> BedPlanes::traces(const discrete::SmoothJoint &law) const
+{
+  std::vector<discrete::Fracture> traces;
+  for (const double share : shares_)
+    for (std::size_t k = 0; k + 1 < bottom_.size(); ++k)
+    {
+      const double x = x_min_ + static_cast<double>(k) * chord_, y = share * thickness_;
+      traces.push_back({{x, bottom_[k] + y}, {x + chord_, bottom_[k + 1] + y}, law});
+    }
+  // Grains at the walls may stand a little beyond the section.
+  for (std::size_t s = 0; s < shares_.size(); ++s)
+  {
+    const std::size_t n = bottom_.size() - 1;
+    discrete::Fracture &first = traces[s * n], &last = traces[s * n + n - 1];
+    first.begin = first.begin - (first.end - first.begin);
+    last.end = last.end + (last.end - last.begin);
+  }
+  return traces;
+}
+
+discrete::FlatJoint joint_between(const LayerParameters &one, const LayerParameters &other)
+{
+  const discrete::FlatJoint &a = one.joint, &b = other.joint;
+  discrete::FlatJoint law = a;
+  law.stiffness_ratio = 0.5 * (a.stiffness_ratio + b.stiffness_ratio);
+  law.tensile_strength = std::min(a.tensile_strength, b.tensile_strength);
+  law.cohesion = std::min(a.cohesion, b.cohesion);
+  law.tan_friction = std::min(a.tan_friction, b.tan_friction);
+  law.residual_friction = std::min(a.residual_friction, b.residual_friction);
+  law.residual_cohesion = std::min(a.residual_cohesion, b.residual_cohesion);
+  law.radius_multiplier = std::min(a.radius_multiplier, b.radius_multiplier);
+  law.breakable = a.breakable && b.breakable;
+  return law;
+}
+
+LayerParameters read_rock(const std::string &file,
+                          const LayerParameters &like,
+                          std::vector<std::string> &problems)
+{
+  const DeckText text = scan_deck(file, problems);
+  LayerParameters rock = like;
+  dealii::ParameterHandler prm;
+  Declarations declarations(prm);
+  declare(rock, declarations);
+  for (const DeckLine &line : text.entries)
+  {
+    const Declarations::Entry *const entry = declarations.find(line.path);
+    if (entry == nullptr)
+      problems.push_back(line.place + ": there is no entry '" + line.path +
+                         "' of a rock: a rock file has entries of 'Layer'. Leave it out.");
+    else if (!entry->pattern->match(line.value))
+      problems.push_back(line.place + ": '" + line.path + "' = '" + line.value +
+                         "' is out of range. Give " + range_in_words(*entry) + ".");
+    else
+      declarations.set(line.path, line.value);
+  }
+  return rock;
+}
+
+void check_beds(const Parameters &p, std::vector<Finding> &findings)
+{
+  const BedsParameters &beds = p.beds;
+  if (beds.rocks.size() != beds.thickness_ratios.size() || beds.rocks.size() < 2)
+    findings.push_back(
+        {{"Beds/Rocks", "Beds/Thickness ratios"},
+         "a stack has two beds or more, each with a thickness and a rock; there are " +
+             std::to_string(beds.thickness_ratios.size()) + " thicknesses and " +
+             std::to_string(beds.rocks.size()) + " rocks. Give as many of both."});
+  if (p.layer.representation != "grains")
+    findings.push_back({{"Components", "Layer/Representation"},
+                        "beds are of grains. Give grains, or leave beds out."});
+  if (p.has("gravity") || p.has("surface pressure"))
+    findings.push_back({{"Components"},
+                        "a stack of beds cannot be prestressed in this version. Leave out "
+                        "gravity and surface pressure, or beds."});
+  if (p.has("calibration"))
+    findings.push_back({{"Components"},
+                        "a calibration finds one rock. Leave out beds."});
+  for (const LayerParameters &bed : beds.layers)
+    if (bed.bond_model != "flat joint")
+    {
+      findings.push_back({{"Beds/Rocks", "Layer/Bond model"},
+                          "beds need flat joints in this version. Give flat joint."});
+      break;
+    }
+  if (findings.empty())
+    for (int k = 0; k < p.n_beds(); ++k)
+      if (p.bed_share(k) * p.layer.grains_across < 2.)
+      {
+        findings.push_back({{"Beds/Thickness ratios", "Layer/Grains across"},
+                            "bed " + std::to_string(k + 1) + " from below would be " +
+                                short_text(p.bed_share(k) * p.layer.grains_across) +
+                                " grains thick. Give at least two: more grains across, or "
+                                "a thicker bed."});
+      }
+}
+} // namespace antiform::cases
