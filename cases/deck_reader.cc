@@ -147,11 +147,12 @@ private:
                           "'include FILE' or a comment after '#'.");
   }
 
-  /// An entry of an include may be set anew; twice in one file is a slip.
+  /// An entry of an include may be set anew, by the same include too; in two lines of one
+  /// file it is a slip.
   void add_entry(const DeckLine &entry, const std::string &file)
   {
     const auto [first, is_new] = places_.insert({{file, entry.path}, entry.place});
-    if (!is_new)
+    if (!is_new && first->second != entry.place)
       problems_.push_back(entry.place + ": '" + entry.path +
                           "' has been set in this file already (" + first->second +
                           "). Remove one of the two lines.");

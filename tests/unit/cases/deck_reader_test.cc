@@ -144,6 +144,18 @@ TEST(DeckReader, RefusesAnEntryThatAFileSetsTwiceButNotOneThatItsIncludeSets)
   EXPECT_NE(problems[0].find(file + ":3"), std::string::npos) << problems[0];
 }
 
+TEST(DeckReader, ReadsAnIncludeTwice)
+{
+  const Scratch scratch;
+  scratch.write("rock.prm", "set Title = of the rock\n");
+  const std::string file = scratch.write(
+      "a.prm", "include rock.prm\nset Title = mine\ninclude rock.prm\n");
+  std::vector<std::string> problems;
+  const DeckText deck = scan_deck(file, problems);
+  EXPECT_TRUE(problems.empty()) << join(problems, "\n");
+  EXPECT_EQ(deck.entries.back().value, "of the rock");
+}
+
 TEST(DeckReader, TellsWhatTwoDecksSetDifferently)
 {
   const std::string one = "set Title = a\nsubsection Layer\nset Seed = 1\nend\n",

@@ -160,7 +160,10 @@ TEST(IntactKernel, EveryLevelOfThisProcessorGivesTheSameBits)
           const std::vector<std::int32_t> without_scatter = plain.over;
           scatter_strengths(sample.joints, 0, {0.4, 0.4}, 3);
           plain = run_kernel(levels.front(), sample);
-          EXPECT_NE(plain.over, without_scatter);
+          if (turn < 1.) // turned far, joints are over any strength
+          {
+            EXPECT_NE(plain.over, without_scatter);
+          }
         }
         for (const KernelLevel &level : levels)
         {
