@@ -1,11 +1,15 @@
 #include "cases/beds.h"
 
 #include "cases/deck_reader.h"
+#include "coupling/state_image.h"
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 namespace antiform::cases
 {
@@ -13,10 +17,14 @@ BedPlanes::BedPlanes(const Parameters &p, const SectionGeometry &geometry)
     : x_min_(geometry.x_min())
     , thickness_(geometry.thickness())
 {
-  // Short enough to follow the fold to a hundredth of a grain or so, long enough for
-  // several pairs of grains.
-  const auto n = static_cast<std::size_t>(
-      std::ceil(geometry.length() / (4. * geometry.diameter())));
+  // As long as they follow the fold to a fiftieth of a grain: at its ends a chord is not
+  // covered by pairs of its own.
+  const double q = 2. * M_PI / geometry.wavelength(), d = geometry.diameter();
+  const double curvature = 0.5 * geometry.amplitude() * q * q;
+  const double chord =
+      curvature > 0. ? std::max(4. * d, std::sqrt(8. * 0.02 * d / curvature))
+                     : geometry.length();
+  const auto n = static_cast<std::size_t>(std::ceil(geometry.length() / chord));
   chord_ = geometry.length() / static_cast<double>(n);
   for (std::size_t k = 0; k <= n; ++k)
     bottom_.push_back(
@@ -78,12 +86,35 @@ discrete::FlatJoint joint_between(const LayerParameters &one, const LayerParamet
   return law;
 }
 
+namespace
+{
+bool is_of_whole_layer(const std::string &path)
+{
+  for (const char *name :
+       {"Representation", "Thickness", "Shape", "Slenderness ratio", "Length ratio",
+        "Amplitude ratio", "Straight end ratio", "Grains across", "Porosity",
+        "Coordination number", "Locked-in stress", "Seed", "Bond model"})
+    if (path == std::string("Layer/") + name)
+      return true;
+  return false;
+}
+} // namespace
+
 LayerParameters read_rock(const std::string &file,
                           const LayerParameters &like,
                           std::vector<std::string> &problems)
 {
-  const DeckText text = scan_deck(file, problems);
   LayerParameters rock = like;
+  if (file.empty())
+  {
+    problems.push_back("'Beds/Rocks' has an empty name in its list. Give a file (.prm) for "
+                       "each bed.");
+    return rock;
+  }
+  std::vector<std::string> unreadable;
+  const DeckText text = scan_deck(file, unreadable);
+  for (const std::string &problem : unreadable)
+    problems.push_back("'Beds/Rocks': " + problem);
   dealii::ParameterHandler prm;
   Declarations declarations(prm);
   declare(rock, declarations);
@@ -93,6 +124,10 @@ LayerParameters read_rock(const std::string &file,
     if (entry == nullptr)
       problems.push_back(line.place + ": there is no entry '" + line.path +
                          "' of a rock: a rock file has entries of 'Layer'. Leave it out.");
+    else if (is_of_whole_layer(line.path))
+      problems.push_back(line.place + ": '" + line.path +
+                         "' is of the whole layer, not of the rock of a bed. Set it in the "
+                         "deck.");
     else if (!entry->pattern->match(line.value))
       problems.push_back(line.place + ": '" + line.path + "' = '" + line.value +
                          "' is out of range. Give " + range_in_words(*entry) + ".");
@@ -100,6 +135,30 @@ LayerParameters read_rock(const std::string &file,
       declarations.set(line.path, line.value);
   }
   return rock;
+}
+
+std::string text_of_files(const Parameters &p)
+{
+  std::string text;
+  for (int k = 0; p.has("beds") && k < p.n_beds(); ++k)
+  {
+    LayerParameters rock = p.bed(k);
+    dealii::ParameterHandler prm;
+    Declarations declarations(prm);
+    declare(rock, declarations);
+    std::ostringstream out;
+    prm.print_parameters(out, dealii::ParameterHandler::PRM |
+                                  dealii::ParameterHandler::KeepDeclarationOrder);
+    text += "subsection Bed " + std::to_string(k + 1) + "\n" + out.str() + "end\n";
+  }
+  if (p.has("fractures") && !p.fractures.table.empty())
+  {
+    std::ifstream file(p.fractures.table, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    text += "set Checksum of Fractures/Table = " +
+            std::to_string(coupling::crc64(bytes.data(), bytes.size())) + "\n";
+  }
+  return text;
 }
 
 void check_beds(const Parameters &p, std::vector<Finding> &findings)
@@ -126,6 +185,18 @@ void check_beds(const Parameters &p, std::vector<Finding> &findings)
     {
       findings.push_back({{"Beds/Rocks", "Layer/Bond model"},
                           "beds need flat joints in this version. Give flat joint."});
+      break;
+    }
+  for (const LayerParameters &bed : beds.layers)
+    if (bed.radius_ratio != p.layer.radius_ratio ||
+        bed.installation_gap != p.layer.installation_gap)
+    {
+      findings.push_back(
+          {{"Beds/Rocks", "Layer/Radius ratio", "Layer/Installation gap ratio"},
+           "all beds are packed as one, with the layer's radius ratio (" +
+               short_text(p.layer.radius_ratio) + ") and installation gap ratio (" +
+               short_text(p.layer.installation_gap) +
+               "); a rock has others. Give rocks of one packing, and the layer the same."});
       break;
     }
   if (findings.empty())

@@ -116,6 +116,12 @@ int check(const Parameters &p, const bool json, std::ostream &out)
   if (p.layer.representation == "grains")
     line(out, "            %.3g grains across, mean diameter %.3g m",
          p.layer.grains_across, g.diameter());
+  for (int bed = 0; p.has("beds") && bed < p.n_beds(); ++bed)
+    line(out, "  bed %d     %.3g m thick, %s: %.40s", bed + 1,
+         p.bed_share(bed) * g.thickness(), p.beds.interface.c_str(),
+         p.beds.rocks[static_cast<std::size_t>(bed)]
+             .substr(p.beds.rocks[static_cast<std::size_t>(bed)].rfind('/') + 1)
+             .c_str());
   if (p.has("matrix"))
   {
     line(out,
@@ -128,7 +134,9 @@ int check(const Parameters &p, const bool json, std::ostream &out)
       line(out, "  overlap   %.3g d wide (%.3g m), %.3g d of matrix grains before it",
            p.bridging.overlap, p.bridging.overlap * g.diameter(), p.bridging.buffer);
   }
-  if (!p.is_specimen())
+  if (p.has("beds"))
+    out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";
+  else if (!p.is_specimen())
     print_mechanism(p, e, out);
   out << "\nEffects\n";
   for (const Effect &effect : list_effects(p))

@@ -31,12 +31,14 @@ std::vector<Effect> list_effects(const Parameters &p)
   const bool grains = p.layer.representation == "grains";
   const bool matrix = p.has("matrix");
   const bool mesh = !grains || (matrix && p.matrix.representation == "continuum");
-  const bool breakable =
-      grains && (p.layer.joint.breakable || (matrix && p.matrix.breakable));
+  bool layer_breaks = false;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    layer_breaks |= p.bed(bed).joint.breakable;
+  const bool breakable = grains && (layer_breaks || (matrix && p.matrix.breakable));
   const bool slips = grains && matrix && p.matrix.interface == "frictionless";
   const bool beside = grains && discrete::has_contact_beside(p.layer.law());
   const bool flat =
-      (grains && p.layer.bond_model == "flat joint" && p.layer.joint.breakable) ||
+      (grains && p.layer.bond_model == "flat joint" && layer_breaks) ||
       (grains && matrix && p.matrix.breakable);
 
   const std::string unbonded = "joints of the layer begin without bonds";

@@ -233,7 +233,12 @@ void bond(GrainSection &section,
   if (!p.has_smooth_joints())
     return;
   section.smooth = make_smooth_joints(grains, std::move(fractures), crossed);
-  section.smooth->effective_modulus = section.modulus[layer_region];
+  // Of pairs that meet later: in series, whichever beds they are of.
+  double compliance = 0.;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    compliance += 1. / section.modulus[bed_region(bed)];
+  section.smooth->effective_modulus = p.n_beds() == 1 ? section.modulus[layer_region]
+                                                      : p.n_beds() / compliance;
   section.smooth->stiffness_ratio = constants(p.layer.law()).stiffness_ratio;
 }
 } // namespace

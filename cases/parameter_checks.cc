@@ -176,12 +176,32 @@ void check_modulus(const Parameters &p, Findings &findings)
              short_text(bonds) + " Pa, which cannot belong together. Give both in Pa."});
 }
 
+/// What holds for any rock of the layer, be it that of a bed.
+void check_rocks(const Parameters &p, Findings &findings)
+{
+  if (p.layer.representation != "grains")
+    return;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+  {
+    Parameters alone = p;
+    alone.layer = p.bed(bed);
+    Findings of_bed;
+    check_modulus(alone, of_bed);
+    check_bonds(alone, of_bed);
+    check_types(alone, of_bed);
+    for (Finding &finding : of_bed)
+    {
+      if (p.has("beds"))
+        finding = {{"Beds/Rocks"},
+                   "bed " + std::to_string(bed + 1) + " from below, '" +
+                       finding.entries.front() + "': " + finding.text};
+      findings.push_back(finding);
+    }
+  }
+}
+
 void check_layer(const Parameters &p, Findings &findings)
 {
-  if (p.layer.representation == "grains")
-    check_modulus(p, findings);
-  if (p.layer.representation == "grains")
-    check_bonds(p, findings);
   if (p.layer.representation == "grains" && p.layer_length() < p.layer.thickness)
     findings.push_back(
         {{p.layer.length_ratio > 0. ? "Layer/Length ratio" : "Layer/Slenderness ratio",
@@ -364,9 +384,9 @@ std::vector<Finding> check_parameters(const Parameters &p)
   check_components(p, findings);
   if (p.has("layer"))
   {
+    check_rocks(p, findings);
     check_layer(p, findings);
     check_specimen(p, findings);
-    check_types(p, findings);
   }
   if (p.has("layer") && p.has("matrix"))
     check_matrix(p, findings);

@@ -1,5 +1,6 @@
 #include "cases/program.h"
 
+#include "cases/beds.h"
 #include "cases/circle_record.h"
 #include "cases/deck_reader.h"
 #include "cases/interrupt.h"
@@ -111,7 +112,7 @@ private:
   {
     if (!archive.is_loading())
     {
-      std::string deck = effective_deck(parameters_);
+      std::string deck = effective_deck(parameters_) + text_of_files(parameters_);
       archive.text("deck", deck);
     }
     double wall = past_.wall_seconds + seconds_since(begin_);
@@ -329,7 +330,8 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
     state.emplace(path, communicator);
     std::string deck;
     state->text("deck", deck);
-    if (const std::string asked = effective_deck(parameters); deck != asked)
+    if (const std::string asked = effective_deck(parameters) + text_of_files(parameters);
+        deck != asked)
     {
       std::string problem =
           "'" + path +

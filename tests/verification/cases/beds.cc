@@ -149,9 +149,47 @@ TEST(Beds, AreRefusedWithoutRocksThatExistOrWithoutAThicknessForEach)
   EXPECT_NE(refusal({stack({rock_1, rock_2}), "Beds/Thickness ratios=1, 100"})
                 .find("Give at least two"),
             std::string::npos);
+  std::ofstream(folder.path("weak.prm"))
+      << "include " + rock_2 + "\nsubsection Layer\nsubsection Flat joint\n"
+         "set Tensile strength = 100e6\nset Friction angle = 60\nend\nend\n";
+  EXPECT_NE(refusal({"Beds/Rocks=" + rock_1 + ", " + folder.path("weak.prm"),
+                     "Beds/Thickness ratios=1, 1"})
+                .find("bed 2 from below, 'Layer/Flat joint/Tensile strength'"),
+            std::string::npos);
+  std::ofstream(folder.path("seed.prm")) << "subsection Layer\nset Seed = 3\nend\n";
+  EXPECT_NE(refusal({"Beds/Rocks=" + rock_1 + ", " + folder.path("seed.prm"),
+                     "Beds/Thickness ratios=1, 1"})
+                .find("is of the whole layer"),
+            std::string::npos);
   std::ofstream(folder.path("wrong.prm")) << "subsection Matrix\nset Seed = 1\nend\n";
   EXPECT_NE(refusal({"Beds/Rocks=" + rock_1 + ", " + folder.path("wrong.prm"),
                      "Beds/Thickness ratios=1, 1"})
                 .find("a rock file has entries of 'Layer'"),
             std::string::npos);
+}
+
+TEST(Beds, AreNotResumedWithAnotherRock)
+{
+  const TemporaryFolder folder;
+  const std::string rock = folder.path("rock.prm");
+  const auto write = [&](const char *strength)
+  {
+    std::ofstream(rock) << "include " + rock_1 + "\nsubsection Layer\n"
+                           "subsection Flat joint\nset Tensile strength = "
+                        << strength << "\nend\nend\n";
+  };
+  write("15e6");
+  const std::string command =
+      "run " ANTIFORM_SOURCE_DIR "/cases/laboratory/uniaxial.prm -o " +
+      folder.path("run") +
+      set({"Components=layer, beds, walls, damping", stack({rock_1, rock}),
+           "Beds/Thickness ratios=1, 1", "Layer/Grains across=12",
+           "Run/End shortening=1e-3"});
+  EXPECT_EQ(run_program(command + " --time-limit 0.01").status, 3);
+  write("14e6");
+  const Outcome outcome = run_program(command + " --resume");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("'Bed 2/Layer/Flat joint/Tensile strength'"),
+            std::string::npos)
+      << outcome.output;
 }
