@@ -65,6 +65,7 @@ public:
       , options_(options)
       , communicator_(communicator)
       , log_(log)
+      , deck_(effective_deck(parameters) + text_of_files(parameters))
       , begin_(Timer::now())
   {
   }
@@ -112,7 +113,7 @@ private:
   {
     if (!archive.is_loading())
     {
-      std::string deck = effective_deck(parameters_) + text_of_files(parameters_);
+      std::string deck = deck_;
       archive.text("deck", deck);
     }
     double wall = past_.wall_seconds + seconds_since(begin_);
@@ -308,6 +309,7 @@ private:
   const RunOptions &options_;
   MPI_Comm communicator_;
   RunLog &log_;
+  std::string deck_; ///< as the run began: the files that it names may change later
   Timer::time_point begin_;
   std::unique_ptr<Scene> scene_;
   Recorder *recorder_ = nullptr;

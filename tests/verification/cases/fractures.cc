@@ -2,6 +2,7 @@
 #include "support/tiny_run.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 using namespace antiform::test;
@@ -164,4 +165,35 @@ TEST(BondModels, RunWithALedgerThatCloses)
     else
       EXPECT_LT(effects.at("contacts").at("calls"), run.at("steps"));
   }
+}
+
+// A checkpoint holds what the table was when the run began, whatever becomes of it later.
+TEST(Fractures, AreNotResumedWithATableEditedWhileTheRunWasGoing)
+{
+  const TemporaryFolder folder;
+  const std::string table = folder.path("table.csv"), run = folder.path("run");
+  const auto write = [&](const char *angle)
+  {
+    std::ofstream(table) << "x1_m,y1_m,x2_m,y2_m,friction_angle_deg\n"
+                            "-0.02,-0.02,0.02,0.02,"
+                         << angle << "\n";
+  };
+  write("30");
+  const std::string command =
+      specimen({"Components=layer, walls, servo walls, fractures, damping",
+                "Fractures/Table=" + table, "Output/Checkpoint interval=5e-4"}) +
+      run;
+  {
+    RunningProgram program(command);
+    ASSERT_TRUE(
+        program.wait_until([&] { return std::filesystem::exists(run + "/state.h5"); }));
+    write("1");
+    const auto before = std::filesystem::last_write_time(run + "/state.h5");
+    ASSERT_TRUE(program.wait_until(
+        [&] { return std::filesystem::last_write_time(run + "/state.h5") != before; }));
+  } // killed
+  const Outcome outcome = run_program(command + " --resume");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("Checksum of Fractures/Table"), std::string::npos)
+      << outcome.output;
 }
