@@ -17,9 +17,12 @@ void report_fractures(const Scene &scene, Summary &summary)
     return;
   const discrete::SmoothJoints &smooth = *scene.grains->smooth;
   const std::vector<Vec2> layer = scene.geometry.layer_outline();
+  const std::size_t n_fractures =
+      smooth.fractures.size() - scene.grains->n_bedding_traces;
   double traces = 0., farthest = 0., widest = 0., joints = 0.;
-  for (const discrete::Fracture &fracture : smooth.fractures)
-    traces += discrete::length_inside(layer, fracture.begin, fracture.end);
+  for (std::size_t f = 0; f < n_fractures; ++f)
+    traces += discrete::length_inside(layer, smooth.fractures[f].begin,
+                                      smooth.fractures[f].end);
   for (const SmoothContact &c : smooth.contacts)
   {
     farthest = std::max(farthest, std::abs(c.slip));
@@ -27,8 +30,11 @@ void report_fractures(const Scene &scene, Summary &summary)
     joints += 1.;
   }
   auto &results = summary.results;
-  results["fractures"] = {static_cast<double>(smooth.fractures.size()), "-"};
-  results["fracture_intensity"] = {traces / discrete::area(layer), "1/m"};
+  if (scene.parameters.has("fractures"))
+  {
+    results["fractures"] = {static_cast<double>(n_fractures), "-"};
+    results["fracture_intensity"] = {traces / discrete::area(layer), "1/m"};
+  }
   results["smooth_joints"] = {joints, "-"};
   results["largest_fracture_slip"] = {farthest, "m"};
   results["largest_fracture_opening"] = {widest, "m"};

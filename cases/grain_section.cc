@@ -233,12 +233,7 @@ void bond(GrainSection &section,
   if (!p.has_smooth_joints())
     return;
   section.smooth = make_smooth_joints(grains, std::move(fractures), crossed);
-  // Of pairs that meet later: in series, whichever beds they are of.
-  double compliance = 0.;
-  for (int bed = 0; bed < p.n_beds(); ++bed)
-    compliance += 1. / section.modulus[bed_region(bed)];
-  section.smooth->effective_modulus = p.n_beds() == 1 ? section.modulus[layer_region]
-                                                      : p.n_beds() / compliance;
+  section.smooth->modulus = section.modulus;
   section.smooth->stiffness_ratio = constants(p.layer.law()).stiffness_ratio;
 }
 } // namespace
@@ -335,8 +330,9 @@ GrainSection make_grains(const Parameters &p,
   {
     SmoothJoint bedding;
     bedding.friction = p.beds.friction;
-    for (const Fracture &trace : planes.traces(bedding))
-      fractures.push_back(trace);
+    const std::vector<Fracture> traces = planes.traces(bedding);
+    fractures.insert(fractures.end(), traces.begin(), traces.end());
+    section.n_bedding_traces = traces.size();
   }
   bond(section, p, pairs, std::move(fractures));
   const auto seed = static_cast<std::uint64_t>(p.layer.seed);

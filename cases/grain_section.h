@@ -50,7 +50,8 @@ struct GrainSection
   coupling::GrainState state;
   discrete::PackingQuality layer_quality;
   std::optional<MatrixRock> matrix;
-  std::optional<discrete::SmoothJoints> smooth; ///< of pre-existing fractures
+  std::optional<discrete::SmoothJoints> smooth; ///< of fractures, then of the bedding
+  std::size_t n_bedding_traces = 0;             ///< the last ones of those fractures
   std::vector<int> tile_grain;    ///< grain of the tile that a matrix grain copies; -1
   std::vector<double> modulus;    ///< E* by region, contact and bond together [Pa]
   double installation_gap = 0.;   ///< [m]

@@ -276,7 +276,7 @@ def fracture_map(run, frame, path):
             axes.add_collection(LineCollection(lines, colors=FRACTURE, linewidths=1.4,
                                                zorder=2.5))
         handles.append(Line2D([], [], color=FRACTURE, linewidth=2.5,
-                              label="pre-existing fractures"))
+                              label="fractures, sliding beds"))
     if frame.grains is not None:
         stack = beds(frame)
         for bed, _ in stack:

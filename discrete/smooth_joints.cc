@@ -364,7 +364,9 @@ bool SmoothJointSearch::takes(const std::int32_t i, const std::int32_t j)
     c.origin = dot(at.branch, at.tangent);
     c.area = narrow(grains_, c) * joints_.area_ratio[f];
     set_stiffness(joints_.fractures[f].law,
-                  joints_.effective_modulus / (grains_.radius[i] + grains_.radius[j]),
+                  joint_stiffness(grains_.radius[i], grains_.radius[j],
+                                  joints_.modulus[grains_.region[i]],
+                                  joints_.modulus[grains_.region[j]]),
                   joints_.stiffness_ratio, c);
     born_.push_back(c);
   }

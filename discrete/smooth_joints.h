@@ -42,8 +42,9 @@ struct SmoothJoints
 {
   std::vector<Fracture> fractures;
   std::vector<double> area_ratio; ///< of each fracture: area of a pair over 2 min(R)
-  /// E* and k_n/k_s that give the stiffness of pairs which meet later.
-  double effective_modulus = 0., stiffness_ratio = 1.;
+  /// E* by region and k_n/k_s, which give the stiffness of pairs that meet later [Pa].
+  std::vector<double> modulus;
+  double stiffness_ratio = 1.;
 
   // State.
   std::vector<SmoothContact> contacts;

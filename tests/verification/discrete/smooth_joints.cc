@@ -255,6 +255,27 @@ TEST(SmoothJoint, BlockSlidesAtTheAngleOfFrictionWhateverTheGrains)
   }
 }
 
+// Two grains that come to meet across a plane are springs in series, each of its own
+// region: k_n = 1 / (R_1/E_1 + R_2/E_2).
+TEST(SmoothJoint, OfGrainsThatMeetLaterHasTheModuliOfTheirRegions)
+{
+  Grains grains;
+  grains.add({0., 0.}, 0.5, 1., 0);
+  grains.add({0.2, 1.4}, 0.4, 1., 2);
+  const std::vector<Fracture> plane = {{{-2., 0.7}, {2., 0.7}, {}}};
+  SmoothJoints joints = make_smooth_joints(grains, plane, {});
+  joints.modulus = {1e3, 0., 50.};
+  joints.stiffness_ratio = 2.;
+  grains.displacement_y[1] = -0.6; // they overlap now
+  SmoothJointSearch search(grains, joints, 0.1);
+  EXPECT_TRUE(search.takes(0, 1));
+  search.finish();
+  ASSERT_EQ(joints.contacts.size(), 1u);
+  const double k = 1. / (0.5 / 1e3 + 0.4 / 50.);
+  EXPECT_NEAR(joints.contacts[0].normal_stiffness / k, 1., 1e-14);
+  EXPECT_NEAR(joints.contacts[0].shear_stiffness / k, 0.5, 1e-14);
+}
+
 TEST(SmoothJoint, EnergyClosesWhileFracturesSlideAndPairsChange)
 {
   Sample sample;
@@ -274,7 +295,7 @@ TEST(SmoothJoint, EnergyClosesWhileFracturesSlideAndPairsChange)
   ExplicitRun run(std::move(sample));
   Grains &grains = run.sample.grains;
   run.smooth = make_smooth_joints(grains, fractures, crossed);
-  run.smooth->effective_modulus = 1e3;
+  run.smooth->modulus = {1e3};
   run.smooth->stiffness_ratio = 2.2;
   run.has_contacts = true;
   run.contacts.margin = 0.1;
