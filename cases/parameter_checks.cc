@@ -94,7 +94,7 @@ void check_specimen(const Parameters &p, Findings &findings)
                         "servo walls and membrane both confine the specimen. Give one of "
                         "them."});
   if (p.confinement() != nullptr &&
-      p.confinement()->pressure > 0.02 * p.layer.young_modulus)
+      p.confinement()->pressure > 0.02 * p.young_modulus())
     findings.push_back({{p.has("membrane") ? "Membrane/Pressure" : "Servo walls/Pressure",
                          "Layer/Young modulus"},
                         "more than 2 % of the rock's Young's modulus, beyond the small "
@@ -382,6 +382,12 @@ std::vector<Finding> check_parameters(const Parameters &p)
 {
   Findings findings;
   check_components(p, findings);
+  if (p.has("layer") && p.has("beds"))
+  {
+    check_beds(p, findings);
+    if (!findings.empty())
+      return findings; // what else is wrong depends on the beds
+  }
   if (p.has("layer"))
   {
     check_rocks(p, findings);
@@ -392,8 +398,6 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_matrix(p, findings);
   if (p.is_bridged())
     check_bridging(p, findings);
-  if (p.has("layer") && p.has("beds"))
-    check_beds(p, findings);
   check_run(p, findings);
   if (p.has("layer") && p.has("fractures"))
     check_fractures(p, findings);
@@ -408,144 +412,5 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.has("layer") && findings.empty()) // else the geometry may not exist
     check_memory(p, findings);
   return findings;
-}
-
-// The deck gives degrees; a tangent that no angle rounds to could not be written back.
-LayerParameters::LayerParameters()
-{
-  joint.tan_friction = tangent_of_degrees(8.);
-}
-
-discrete::JointLaw LayerParameters::law() const
-{
-  if (bond_model == "parallel bond")
-  {
-    discrete::ParallelBond bond = parallel_bond;
-    bond.breakable = joint.breakable;
-    return bond;
-  }
-  if (bond_model == "contact bond")
-  {
-    discrete::ContactBond bond = contact_bond;
-    bond.breakable = joint.breakable;
-    return bond;
-  }
-  return joint;
-}
-
-discrete::LinearContact LayerParameters::grain_contact() const
-{
-  discrete::LinearContact contact;
-  contact.effective_modulus = joint.effective_modulus;
-  contact.stiffness_ratio = joint.stiffness_ratio;
-  contact.friction = joint.residual_friction;
-  if (bond_model == "parallel bond")
-  {
-    contact.effective_modulus = parallel_bond.contact_modulus;
-    contact.stiffness_ratio = parallel_bond.contact_stiffness_ratio;
-    contact.friction = parallel_bond.residual_friction;
-  }
-  else if (bond_model == "contact bond")
-  {
-    contact.effective_modulus = contact_bond.effective_modulus;
-    contact.stiffness_ratio = contact_bond.stiffness_ratio;
-    contact.friction = contact_bond.residual_friction;
-  }
-  return contact;
-}
-
-bool Parameters::has(const std::string &component) const
-{
-  return std::find(components.begin(), components.end(), component) != components.end();
-}
-
-double Parameters::bed_share(const int k) const
-{
-  if (!has("beds"))
-    return 1.;
-  double sum = 0.;
-  for (const double ratio : beds.thickness_ratios)
-    sum += ratio;
-  return beds.thickness_ratios.at(static_cast<std::size_t>(k)) / sum;
-}
-
-double Parameters::plane_modulus() const
-{
-  const auto of = [](const LayerParameters &rock)
-  { return rock.young_modulus / (1. - rock.poisson_ratio * rock.poisson_ratio); };
-  if (!has("beds"))
-    return of(layer);
-  double sum = 0.;
-  for (int k = 0; k < n_beds(); ++k)
-    sum += bed_share(k) * of(bed(k));
-  return sum;
-}
-
-bool Parameters::has_smooth_joints() const
-{
-  return has("fractures") || (has("beds") && beds.interface == "frictional");
-}
-
-bool Parameters::has_unbonded_joints() const
-{
-  if (!has("layer") || layer.representation != "grains" ||
-      layer.bond_model != "flat joint")
-    return false;
-  for (int k = 0; k < n_beds(); ++k)
-    if (bed(k).types.slit_fraction + bed(k).types.gapped_fraction > 0.)
-      return true;
-  return false;
-}
-
-bool Parameters::has_contacts_from_start() const
-{
-  return has("layer") && layer.representation == "grains" &&
-         (discrete::has_contact_beside(layer.law()) || has_smooth_joints() ||
-          (has("matrix") && matrix.interface == "frictionless"));
-}
-
-const ConfinementParameters *Parameters::confinement() const
-{
-  if (has("servo walls"))
-    return &servo_walls;
-  return has("membrane") ? &membrane : nullptr;
-}
-
-bool Parameters::is_specimen() const
-{
-  return has("layer") && !has("matrix") && layer.representation == "grains" &&
-         layer.shape == "straight";
-}
-
-bool Parameters::is_bridged() const
-{
-  return has("layer") && has("matrix") && layer.representation == "grains" &&
-         matrix.representation == "continuum";
-}
-
-double Parameters::layer_length() const
-{
-  if (layer.length_ratio > 0.)
-    return layer.length_ratio * layer.thickness;
-  // Slenderness sqrt(12) L/h = Lambda lambda_c, lambda_c = pi sqrt(E/UCS).
-  const double critical =
-      M_PI * std::sqrt(layer.young_modulus / layer.compressive_strength);
-  return layer.slenderness_ratio * critical * layer.thickness / std::sqrt(12.);
-}
-
-double Parameters::section_length() const
-{
-  const double ends = layer.shape == "cosine" ? 2. * layer.straight_end_ratio : 0.;
-  return layer_length() * (1. + ends);
-}
-
-double Parameters::grain_diameter() const
-{
-  return layer.thickness / layer.grains_across;
-}
-
-double Parameters::matrix_modulus() const
-{
-  return layer.young_modulus / matrix.stiffness_contrast;
 }
 } // namespace antiform::cases
