@@ -9,8 +9,8 @@
 
 namespace antiform::cases
 {
-/// The planes between the beds of a layer: they follow its axis, as chords of a few grain
-/// diameters.
+/// The planes between the beds of a layer: they follow its axis, as chords, as long
+/// as the fold allows.
 class BedPlanes
 {
 public:
@@ -26,7 +26,7 @@ private:
   double bottom(double x) const;
 
   double x_min_, chord_, thickness_;
-  std::vector<double> bottom_;  ///< at the ends of the chords [m]
+  std::vector<double> bottom_; ///< at the ends of the chords [m]
   std::vector<double> shares_; ///< of the thickness below each plane [-]
 };
 

@@ -46,11 +46,14 @@ Json to_json(const Parameters &p)
       {"slenderness_ratio", e.slenderness_ratio},
       {"burial_depth_ratio", p.has("matrix") ? p.matrix.burial_depth_ratio : 0.},
       {"stiffness_contrast", p.has("matrix") ? p.matrix.stiffness_contrast : 0.}};
-  json["gamma_at_buckling"] = {{"pinned", e.pinned},
-                               {"guided", e.guided},
-                               {"pinned_without_matrix", e.bare_pinned},
-                               {"guided_without_matrix", e.bare_guided}};
-  json["crushes_before_folding"] = e.crushes_first;
+  if (!p.has("beds")) // the closed forms are of one layer
+  {
+    json["gamma_at_buckling"] = {{"pinned", e.pinned},
+                                 {"guided", e.guided},
+                                 {"pinned_without_matrix", e.bare_pinned},
+                                 {"guided_without_matrix", e.bare_guided}};
+    json["crushes_before_folding"] = e.crushes_first;
+  }
   json["sizes"] = {{"grains", std::llround(sizes.grains)},
                    {"layer_grains", std::llround(sizes.layer_grains)},
                    {"joints", std::llround(sizes.joints)},

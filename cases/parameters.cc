@@ -91,6 +91,8 @@ public:
         find_data("Beds/Rocks", rock);
         p.beds.layers.push_back(read_rock(rock, p.layer, problems_));
       }
+    if (p.has("beds"))
+      refuse_what_rocks_say();
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())
@@ -143,6 +145,19 @@ private:
       problems_.push_back(begin + " twice. Name it once.");
     else
       components.push_back(name);
+  }
+
+  /// A stack has its bonds from the rock files: an override that looks as if it did
+  /// something would be lost.
+  void refuse_what_rocks_say()
+  {
+    for (const DeckLine &line : text_.entries)
+      if (line.place == "--set" && (line.path == "Layer/Young modulus" ||
+                                    line.path == "Layer/Grain density" ||
+                                    line.path.find("Layer/Flat joint/") == 0))
+        problems_.push_back(set_place(line) + "the rocks of 'Beds/Rocks' say this for "
+                                              "each bed. Change their files, or give "
+                                              "others.");
   }
 
   bool is_known_section(const std::string &path) const

@@ -264,7 +264,8 @@ struct Parameters
   }
   /// Share of bed @p k in the layer's thickness [-].
   double bed_share(int k) const;
-  /// E/(1 - nu^2) of the layer, the mean of its beds [Pa].
+  /// E and E/(1 - nu^2) of the layer, the means of its beds [Pa].
+  double young_modulus() const;
   double plane_modulus() const;
   /// Fractures, or beds that slide.
   bool has_smooth_joints() const;

@@ -234,7 +234,7 @@ void Recorder::look_for_end(const Sample &sample)
   const bool peaked = peak_strain_ > 0. && below >= settled;
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
-  else if (sample.strain >= run.longest_shortening)
+  else if (why_finished_.empty() && sample.strain >= run.longest_shortening)
   {
     without_peak_ = !peaked;
     why_finished_ =

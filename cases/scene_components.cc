@@ -250,7 +250,7 @@ void add_walls(Scene &scene)
   if (const ConfinementParameters *const confinement = p.confinement())
   {
     // Ten times what the pressure's own strain needs in its ramp: room to follow breaks.
-    const double strain = confinement->pressure / p.layer.young_modulus;
+    const double strain = confinement->pressure / p.young_modulus();
     add_confinement(scene,
                     std::max(20. * full, 10. * strain * scene.geometry.length() /
                                              (confinement->ramp * scene.transit_time)));

@@ -18,7 +18,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from specimen_runs import HERE, add_arguments, run, run_all
+from specimen_runs import HERE, add_arguments, run, run_all, write_table
 
 # Small, fast specimens: signs are wanted, not strengths. The gap is one that both the
 # densest and the loosest bonding of the study are within.
@@ -189,10 +189,7 @@ def main():
     if not rows:
         sys.exit("no specimen has all of its tests")
     path = lambda name: os.path.join(arguments.directory, name)
-    with open(path("influence.csv"), "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys())
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(rows, path("influence.csv"))
     write_report(rows, path("influence.md"))
     draw(rows, path("influence.png"))
     print("written:", path("influence.md"), path("influence.png"))

@@ -1,5 +1,6 @@
 """Many specimens at once: what the studies beside this file share."""
 import concurrent.futures
+import csv
 import json
 import os
 import subprocess
@@ -35,6 +36,13 @@ def run_all(job, keys, n_jobs):
             if n % 25 == 0 or n == len(keys):
                 print(f"{n} of {len(keys)} runs", flush=True)
     return results
+
+
+def write_table(rows, path):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def add_arguments(parser):

@@ -149,6 +149,10 @@ TEST(Beds, AreRefusedWithoutRocksThatExistOrWithoutAThicknessForEach)
   EXPECT_NE(refusal({stack({rock_1, rock_2}), "Beds/Thickness ratios=1, 100"})
                 .find("Give at least two"),
             std::string::npos);
+  EXPECT_NE(refusal({stack({rock_1, rock_2}), "Beds/Thickness ratios=1, 1",
+                     "Layer/Flat joint/Cohesion=1e6"})
+                .find("the rocks of 'Beds/Rocks' say this"),
+            std::string::npos);
   std::ofstream(folder.path("weak.prm"))
       << "include " + rock_2 + "\nsubsection Layer\nsubsection Flat joint\n"
          "set Tensile strength = 100e6\nset Friction angle = 60\nend\nend\n";
@@ -192,4 +196,25 @@ TEST(Beds, AreNotResumedWithAnotherRock)
   EXPECT_NE(outcome.output.find("'Bed 2/Layer/Flat joint/Tensile strength'"),
             std::string::npos)
       << outcome.output;
+}
+
+TEST(Beds, ThatSlideAreNotCountedAsFractures)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> sliding{stack({rock_1, rock_1}),
+                                         "Beds/Thickness ratios=1, 1",
+                                         "Beds/Interface=frictional",
+                                         "Layer/Grains across=10",
+                                         "Layer/Breakable=false",
+                                         "Run/End shortening=1e-5"};
+  const nlohmann::json alone =
+      run_stack("laboratory/uniaxial", sliding, folder.path("alone")).at("results");
+  EXPECT_FALSE(alone.contains("fractures"));
+  EXPECT_GT(alone.at("smooth_joints").at("value"), 10.);
+  std::vector<std::string> fractured = sliding;
+  fractured.push_back("Components=layer, beds, walls, fractures, damping");
+  fractured.push_back("Fractures/List=-0.03 -0.02 0 -0.01");
+  EXPECT_EQ(result(run_stack("laboratory/uniaxial", fractured, folder.path("both")),
+                   "fractures"),
+            1.);
 }
