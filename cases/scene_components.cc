@@ -270,15 +270,14 @@ void add_common_components(Scene &scene)
       std::make_unique<ConstrainedForces>(grains, mesh, domain, !p.has("damping")),
       {Stage::damp}, rank_constrained, "unbalanced force",
       reason_for(p, "unbalanced force"));
-  const discrete::GrainDamping *grain_damping = nullptr;
   const std::vector<double> *mesh_damping = nullptr;
   if (p.has("damping"))
   {
     auto &damping =
         simulation.add(std::make_unique<LocalDamping>(grains, mesh, p.damping.coefficient,
                                                       p.damping.form == "combined"),
-                       {Stage::damp}, rank_damping, "damping", reason_for(p, "damping"));
-    grain_damping = damping.grain_forces();
+                       {Stage::damp, Stage::kick}, rank_damping, "damping",
+                       reason_for(p, "damping"));
     mesh_damping = damping.mesh_forces();
   }
   if (p.has("walls"))
@@ -287,7 +286,7 @@ void add_common_components(Scene &scene)
     simulation
         .add(std::make_unique<GrainMotion>(*grains), {Stage::kick, Stage::drift},
              rank_motion, "motion of the grains", reason_for(p, "motion of the grains"))
-        .damping = grain_damping;
+        .damped = p.has("damping");
   if (mesh != nullptr)
   {
     simulation

@@ -14,7 +14,8 @@ void GrainMotion::run(const Stage stage, const Clock &clock)
   {
     if (clock.sample_due)
       before_ = velocities(state_.grains);
-    discrete::kick(state_.grains, clock.dt, damping);
+    if (!damped)
+      discrete::kick(state_.grains, clock.dt);
   }
   else
     discrete::drift(state_.grains, clock.dt);

@@ -22,7 +22,8 @@ struct GrainState
   bool breaking = true;            ///< false: strengths are not looked at
 };
 
-/// Kick and drift of the grains; keeps the velocities before the kick at a sample.
+/// Kick and drift of the grains; keeps the velocities before the kick at a sample. Grains
+/// that are damped are kicked by LocalDamping, in one pass.
 class GrainMotion : public Component
 {
 public:
@@ -34,8 +35,7 @@ public:
   void add_energies(Energies &energies) const override;
   void visit_state(StateArchive &archive) override;
 
-  /// Damping forces to add at the kick; set by the damping component.
-  const discrete::GrainDamping *damping = nullptr;
+  bool damped = false; ///< the kick is the damping component's
 
 private:
   GrainState &state_;

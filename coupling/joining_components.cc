@@ -71,13 +71,12 @@ LocalDamping::LocalDamping(GrainState *grains,
   }
 }
 
-void LocalDamping::run(const Stage, const Clock &clock)
+void LocalDamping::run(const Stage stage, const Clock &clock)
 {
-  if (grains_ != nullptr)
-    compute_damping(grains_->grains, grains_->grains.force_x, grains_->grains.force_y,
-                    grains_->grains.torque, clock.dt, grain_damping_);
-  if (mesh_ != nullptr)
+  if (stage == Stage::damp && mesh_ != nullptr)
     damp_mesh(clock.dt);
+  if (stage == Stage::kick && grains_ != nullptr)
+    damped_kick(grains_->grains, clock.dt, grain_damping_);
 }
 
 void LocalDamping::damp_mesh(const double dt)

@@ -66,7 +66,7 @@ private:
 };
 
 /// Local or combined damping of grains and mesh (GrainDamping), on the constrained
-/// forces.
+/// forces. It kicks the grains as it damps them; its turn comes after GrainMotion's.
 class LocalDamping : public Component
 {
 public:
@@ -78,7 +78,6 @@ public:
   void add_energies(Energies &energies) const override;
   void visit_state(StateArchive &archive) override;
 
-  const discrete::GrainDamping *grain_forces() const { return &grain_damping_; }
   const std::vector<double> *mesh_forces() const { return &mesh_force_; }
 
 private:

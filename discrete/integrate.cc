@@ -1,5 +1,7 @@
 #include "discrete/integrate.h"
 
+#include "discrete/damping_law.h"
+#include "discrete/joint_kernel.h"
 #include "discrete/threading.h"
 
 #include <algorithm>
@@ -20,13 +22,7 @@ void GrainDamping::start(const std::size_t n_grains)
 
 namespace
 {
-/// -1, 0 or 1, without a branch: signs of a vibration are beyond any prediction.
-inline double sign(const double x)
-{
-  return (x > 0. ? 1. : 0.) - (x < 0. ? 1. : 0.);
-}
-
-template <bool combined, bool some_held>
+template <bool combined>
 double damp_some(const std::int64_t n,
                  const double alpha,
                  const double *const r,
@@ -39,15 +35,15 @@ double damp_some(const std::int64_t n,
 #pragma omp simd reduction(+ : power)
   for (std::int64_t i = 0; i < n; ++i)
   {
-    const double size = alpha * std::abs(r[i]);
-    double f = -size * sign(v[i]);
+    double f;
     if (combined)
     {
-      f = 0.5 * size * (sign(r[i] - r_before[i]) - sign(v[i]));
+      f = combined_damping(alpha, r[i], r_before[i], v[i]);
       r_before[i] = r[i];
     }
-    if (some_held)
-      f = inverse_mass[i] > 0. ? f : 0.;
+    else
+      f = local_damping(alpha, r[i], v[i]);
+    f = inverse_mass[i] > 0. ? f : 0.;
     power += (force[i] + f) * v[i];
     force[i] = f;
   }
@@ -63,81 +59,66 @@ double damp(const std::int64_t n,
             const double *const inverse_mass,
             double *const force)
 {
-  const bool combined = r_before != nullptr, held = inverse_mass != nullptr;
-  const auto some = combined ? (held ? damp_some<true, true> : damp_some<true, false>)
-                             : (held ? damp_some<false, true> : damp_some<false, false>);
-  return some(n, alpha, r, r_before, v, inverse_mass, force);
+  return r_before != nullptr
+             ? damp_some<true>(n, alpha, r, r_before, v, inverse_mass, force)
+             : damp_some<false>(n, alpha, r, nullptr, v, inverse_mass, force);
 }
 
-void compute_damping(const Grains &grains,
-                     const std::vector<double> &rx,
-                     const std::vector<double> &ry,
-                     const std::vector<double> &torque,
-                     const double dt,
-                     GrainDamping &damping)
+void damped_kick(Grains &grains, const double dt, GrainDamping &damping)
 {
   if (damping.force_x.size() != grains.size())
     damping.start(grains.size());
+  const KernelLevel &level = kernel_level();
+  const auto before = [&](std::vector<double> &r)
+  { return damping.combined ? r.data() : nullptr; };
+  const double alpha = damping.coefficient;
+  const double *const m = grains.inverse_mass.data();
+  const double *const j = grains.inverse_inertia.data();
+  const DampedKick components[3] = {
+      {alpha, dt, grains.force_x.data(), before(damping.before_x), m,
+       grains.velocity_x.data(), damping.force_x.data()},
+      {alpha, dt, grains.force_y.data(), before(damping.before_y), m,
+       grains.velocity_y.data(), damping.force_y.data()},
+      {alpha, dt, grains.torque.data(), before(damping.before_torque), j,
+       grains.spin.data(), damping.torque.data()}};
   const auto n = static_cast<std::int64_t>(grains.size());
   constexpr auto block = static_cast<std::int64_t>(damping_block);
   const std::int64_t n_blocks = (n + block - 1) / block;
-  const auto component = [&](const std::int64_t b, const std::vector<double> &r,
-                             std::vector<double> &before, const std::vector<double> &v,
-                             std::vector<double> &force)
-  {
-    const std::int64_t begin = b * block;
-    return damp(std::min(block, n - begin), damping.coefficient, r.data() + begin,
-                damping.combined ? before.data() + begin : nullptr, v.data() + begin,
-                nullptr, force.data() + begin);
-  };
 #pragma omp parallel for schedule(static) if (n >= threads_from_grains)
   for (std::int64_t b = 0; b < n_blocks; ++b)
   {
-    const double power =
-        component(b, rx, damping.before_x, grains.velocity_x, damping.force_x) +
-        component(b, ry, damping.before_y, grains.velocity_y, damping.force_y) +
-        component(b, torque, damping.before_torque, grains.spin, damping.torque);
+    double power = 0.;
+    for (const DampedKick &component : components)
+      power += level.damped_kick(component, b * block, std::min(b * block + block, n));
     damping.energy[b] -= 0.5 * dt * power;
   }
 }
 
 namespace
 {
-/// v += dt M^-1 (f + d), d may be null.
+/// v += dt M^-1 f.
 void kick_component(const std::int64_t n,
                     const double dt,
                     const double *const inverse_mass,
                     const double *const force,
-                    const double *const extra,
                     double *const velocity)
 {
-  if (extra == nullptr)
-  {
-#pragma omp for simd schedule(static) nowait
-    for (std::int64_t i = 0; i < n; ++i)
-      velocity[i] += dt * inverse_mass[i] * force[i];
-    return;
-  }
 #pragma omp for simd schedule(static) nowait
   for (std::int64_t i = 0; i < n; ++i)
-    velocity[i] += dt * inverse_mass[i] * (force[i] + extra[i]);
+    velocity[i] += dt * inverse_mass[i] * force[i];
 }
 } // namespace
 
-void kick(Grains &grains, const double dt, const GrainDamping *damping)
+void kick(Grains &grains, const double dt)
 {
   const auto n = static_cast<std::int64_t>(grains.size());
   const double *const m = grains.inverse_mass.data();
   const double *const j = grains.inverse_inertia.data();
-  const bool damped = damping != nullptr;
 #pragma omp parallel if (n >= threads_from_grains)
   {
-    kick_component(n, dt, m, grains.force_x.data(),
-                   damped ? damping->force_x.data() : nullptr, grains.velocity_x.data());
-    kick_component(n, dt, m, grains.force_y.data(),
-                   damped ? damping->force_y.data() : nullptr, grains.velocity_y.data());
-    kick_component(n, dt, j, grains.torque.data(),
-                   damped ? damping->torque.data() : nullptr, grains.spin.data());
+    kick_component(n, dt, m, grains.force_x.data(), grains.velocity_x.data());
+    kick_component(n, dt, m, grains.force_y.data(), grains.velocity_y.data());
+    kick_component(n, dt, j, grains.torque.data(), grains.spin.data());
   }
 }
 

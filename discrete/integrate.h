@@ -30,11 +30,11 @@ struct GrainDamping
 /// Grains whose damping energy is summed up as one.
 constexpr std::size_t damping_block = 512;
 
-/// One component of the damping for @p n degrees of freedom of grains or nodes.
+/// One component of the damping for @p n degrees of freedom of nodes.
 /// \param r                the forces that accelerate, and at the last step @p r_before,
 ///                         which become these (combined; else null) [N]
 /// \param v                velocities [m/s]
-/// \param inverse_mass     no damping where it is 0; null: of all
+/// \param inverse_mass     no damping where it is 0
 /// \param[in,out] force    damping forces, of the last step and then of this one [N]
 /// \return power of the last step's forces and these together [W]
 double damp(std::int64_t n,
@@ -45,19 +45,15 @@ double damp(std::int64_t n,
             const double *inverse_mass,
             double *force);
 
-/// Damping forces of this step from the accelerating forces @p rx, @p ry [N], @p torque
-/// [N m] and the velocities. Books the work of half a step before and half a step after
-/// the present velocities: that of the last step's forces and of these. The energy is
-/// then that removed up to the time of the positions. @p dt is that of every step.
-void compute_damping(const Grains &grains,
-                     const std::vector<double> &rx,
-                     const std::vector<double> &ry,
-                     const std::vector<double> &torque,
-                     double dt,
-                     GrainDamping &damping);
-
-/// v += dt (force + damping) / m, likewise spins. @p damping may be null.
-void kick(Grains &grains, double dt, const GrainDamping *damping);
+/// v += dt force / m, likewise spins.
+void kick(Grains &grains, double dt);
+/// The same with damping, in one pass over the grains: damping forces of this step from
+/// the accelerating forces (grains.force_x and so on) and the velocities before the kick,
+/// then v += dt (force + damping) / m. Books the work of half a step before and half a
+/// step after the present velocities: that of the last step's damping and of this. The
+/// energy is then that removed up to the time of the positions. @p dt is that of every
+/// step. Grains that are held must be without force.
+void damped_kick(Grains &grains, double dt, GrainDamping &damping);
 /// u += dt v, likewise rotations.
 void drift(Grains &grains, double dt);
 

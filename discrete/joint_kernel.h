@@ -103,10 +103,27 @@ void fill_lines(const Grains &grains, Joints &joints);
 /// evaluate_damaged() must take these four then.
 using DamagedKernel = bool (*)(const DamagedKernelInput &input, std::size_t begin);
 
+/// One component of the motion of damped grains; see GrainDamping.
+struct DampedKick
+{
+  double alpha, dt;
+  const double *force;  ///< that accelerates
+  double *force_before; ///< of the last step, becomes this one's; null: local damping
+  const double *inverse_mass; ///< or of inertia
+  double *velocity;           ///< kicked by force and damping
+  double *damping;            ///< force of the last step, then of this one
+};
+/// Damp and kick entries begin .. end - 1. \return power of the damping forces of the
+/// last step and of this one together, with the velocities before the kick [W]
+using DampedKickKernel = double (*)(const DampedKick &in,
+                                    std::size_t begin,
+                                    std::size_t end);
+
 /// Joints of one call: their forces fit the first cache.
 constexpr std::size_t intact_block = 64;
 
-/// The kernels of one vector level; this translation unit is compiled once per level.
+/// The kernels of one vector level: joint_kernel_level.cc and motion_kernel_level.cc are
+/// compiled once per level.
 struct KernelLevel
 {
   const char *name;
@@ -114,6 +131,7 @@ struct KernelLevel
   LineKernel lines;
   SumKernel sum;
   DamagedKernel damaged;
+  DampedKickKernel damped_kick;
 };
 namespace level_baseline
 {

@@ -145,9 +145,8 @@ std::size_t intact_law(const IntactKernelInput &in,
   const std::size_t n = end - begin, whole = n - n % n_lanes;
   LaneMask mask[intact_block / n_lanes], some{};
   for (std::size_t k = 0; k < whole; k += n_lanes)
-    some |= mask[k / n_lanes] =
-        intact_lanes<weighted, prestressed, scattered, true>(in, begin + k, n_lanes,
-                                                             force + k);
+    some |= mask[k / n_lanes] = intact_lanes<weighted, prestressed, scattered, true>(
+        in, begin + k, n_lanes, force + k);
   if (whole < n)
     some |= mask[whole / n_lanes] = intact_lanes<weighted, prestressed, scattered, false>(
         in, begin + whole, n - whole, force + whole);
@@ -368,10 +367,13 @@ bool damaged(const DamagedKernelInput &in, const std::size_t begin)
 }
 } // namespace
 
+double
+damped_kick(const DampedKick &, std::size_t, std::size_t); // motion_kernel_level.cc
+
 #define ANTIFORM_TEXT(x) #x
 #define ANTIFORM_NAME(x) ANTIFORM_TEXT(x)
 KernelLevel kernel_level()
 {
-  return {ANTIFORM_NAME(ANTIFORM_LEVEL) + 6, intact, lines, sum, damaged};
+  return {ANTIFORM_NAME(ANTIFORM_LEVEL) + 6, intact, lines, sum, damaged, damped_kick};
 }
 } // namespace antiform::discrete::ANTIFORM_LEVEL

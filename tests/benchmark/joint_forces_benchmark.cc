@@ -81,35 +81,61 @@ double seconds(const bool of_processor)
   return std::chrono::duration<double>(now).count();
 }
 
-struct Speed
+/// One who takes part: steps that do so many units each, on so many threads.
+struct Runner
 {
-  double median, slowest, fastest; ///< million units per second
+  std::function<void()> step;
+  double units;
+  int n_steps; ///< of a slice
+  int threads;
 };
 
-/// @p step does @p units at a time. One thread: seconds of the processor; more: of the
-/// clock.
-Speed measure(const std::function<void()> &step,
-              const double units,
-              const int n_steps,
-              const int threads,
-              const int repetitions)
+/// Million units per second of each, slice by slice: of the processor on one thread, of
+/// the clock on more. Slices are taken in turn, so that what disturbs the machine for
+/// longer than a slice does not bear on the ratio of two of the same turn.
+std::vector<std::vector<double>> measure_in_turn(const std::vector<Runner> &runners,
+                                                 const int repetitions)
 {
-  omp_set_num_threads(threads);
-  const auto run = [&](const int how_many)
-  {
-    for (int k = 0; k < how_many; ++k)
-      step();
-  };
-  run(n_steps / 4 + 1); // caches, clock, threads
-  std::vector<double> speed;
-  for (int r = 0; r < repetitions; ++r)
-  {
-    const double start = seconds(threads == 1);
-    run(n_steps);
-    speed.push_back(units * n_steps / (seconds(threads == 1) - start) * 1e-6);
-  }
-  std::sort(speed.begin(), speed.end());
-  return {speed[speed.size() / 2], speed.front(), speed.back()};
+  std::vector<std::vector<double>> speeds(runners.size());
+  for (int r = -1; r < repetitions; ++r) // the first turn: caches, clock, threads
+    for (std::size_t k = 0; k < runners.size(); ++k)
+    {
+      const Runner &runner = runners[k];
+      omp_set_num_threads(runner.threads);
+      runner.step(); // its data are in the cache again
+      const double start = seconds(runner.threads == 1);
+      for (int n = 0; n < runner.n_steps; ++n)
+        runner.step();
+      const double taken = seconds(runner.threads == 1) - start;
+      if (r >= 0)
+        speeds[k].push_back(runner.units * runner.n_steps / taken * 1e-6);
+    }
+  return speeds;
+}
+
+struct Spread
+{
+  double median, least, most;
+};
+Spread spread(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  return {values[values.size() / 2], values.front(), values.back()};
+}
+/// Of two in the same turn.
+Spread ratio(const std::vector<double> &a, const std::vector<double> &b)
+{
+  std::vector<double> values;
+  for (std::size_t r = 0; r < a.size(); ++r)
+    values.push_back(a[r] / b[r]);
+  return spread(std::move(values));
+}
+std::string text(const Spread &s, const int digits = 2)
+{
+  char line[80];
+  std::snprintf(line, sizeof line, "%6.*f [%.*f, %.*f]", digits, s.median, digits,
+                s.least, digits, s.most);
+  return line;
 }
 
 int steps_for(const Sample &sample)
@@ -117,22 +143,37 @@ int steps_for(const Sample &sample)
   return std::max(20, static_cast<int>(3e6 / static_cast<double>(sample.grains.size())));
 }
 
-Speed measure_step(Sample &sample, const int threads, const int repetitions)
+Runner runner(Sample &sample, const int threads)
 {
-  Grains &grains = sample.grains;
-  const double dt = 0.5 * stable_step(grains, sample.joints);
-  return measure(
-      [&]
-      {
-        compute_joint_forces(grains, sample.joints, {0, 0., dt}, &sample.cracks, false);
-        kick(grains, dt, nullptr);
-        drift(grains, dt);
-      },
-      static_cast<double>(grains.size()), steps_for(sample), threads, repetitions);
+  const double dt = 0.5 * stable_step(sample.grains, sample.joints);
+  return {[&sample, dt]
+          {
+            compute_joint_forces(sample.grains, sample.joints, {0, 0., dt},
+                                 &sample.cracks, false);
+            kick(sample.grains, dt);
+            drift(sample.grains, dt);
+          },
+          static_cast<double>(sample.grains.size()), steps_for(sample), threads};
+}
+
+/// With combined damping, so weak that the rock goes on vibrating.
+Runner damped_runner(Sample &sample, GrainDamping &damping, const int threads)
+{
+  const double dt = 0.5 * stable_step(sample.grains, sample.joints);
+  damping.coefficient = 1e-6;
+  damping.combined = true;
+  return {[&sample, &damping, dt]
+          {
+            compute_joint_forces(sample.grains, sample.joints, {0, 0., dt},
+                                 &sample.cracks, false);
+            damped_kick(sample.grains, dt, damping);
+            drift(sample.grains, dt);
+          },
+          static_cast<double>(sample.grains.size()), steps_for(sample), threads};
 }
 
 /// The same step with the plain twin, a joint at a time.
-Speed measure_plain_step(Sample &sample, const int repetitions)
+Runner plain_runner(Sample &sample)
 {
   Grains &grains = sample.grains;
   Joints &joints = sample.joints;
@@ -144,7 +185,7 @@ Speed measure_plain_step(Sample &sample, const int repetitions)
     for (std::size_t e = 0; e < twins.back().bond.size(); ++e)
       twins.back().bond[e] = joints.damaged.bond(k, static_cast<int>(e));
   }
-  const auto step = [&]
+  const auto step = [&sample, &grains, &joints, dt, twins]() mutable
   {
     for (std::vector<double> *v : {&grains.force_x, &grains.force_y, &grains.torque})
       std::fill(v->begin(), v->end(), 0.);
@@ -169,59 +210,87 @@ Speed measure_plain_step(Sample &sample, const int repetitions)
       grains.force_y[two] += f.y;
       grains.torque[two] += f.torque2;
     }
-    kick(grains, dt, nullptr);
+    kick(grains, dt);
     drift(grains, dt);
   };
-  return measure(step, static_cast<double>(grains.size()),
-                 std::max(5, steps_for(sample) / 8), 1, repetitions);
+  return {step, static_cast<double>(grains.size()), std::max(5, steps_for(sample) / 8),
+          1};
 }
 
-std::string text(const Speed &s)
+const char *name(const State state)
 {
-  char line[80];
-  std::snprintf(line, sizeof line, "%6.2f [%.2f, %.2f]", s.median, s.slowest, s.fastest);
-  return line;
+  return state == State::intact ? "intact" : "full";
+}
+
+/// Rocks of one law: 1500, 15,000 and 60,000 grains, and for three elements 15,000
+/// numbered at random.
+void print_steps(const State state, const int n_elements, const int repetitions)
+{
+  std::vector<Sample> samples{rock(30, 50, n_elements, state),
+                              rock(100, 150, n_elements, state),
+                              rock(200, 300, n_elements, state)};
+  if (n_elements == 3)
+    samples.push_back(rock(100, 150, n_elements, state, true));
+  std::vector<Sample> twins = samples;
+  Sample damped_rock = samples[1];
+  GrainDamping damping;
+  std::vector<Runner> runners;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+  {
+    runners.push_back(runner(samples[k], 1));
+    runners.push_back(runner(samples[k], 2));
+    runners.push_back(plain_runner(twins[k]));
+  }
+  for (const int threads : {1, 2})
+    runners.push_back(damped_runner(damped_rock, damping, threads));
+  const auto speeds = measure_in_turn(runners, repetitions);
+
+  for (std::size_t k = 0; k < samples.size(); ++k)
+  {
+    const std::vector<double> &one = speeds[3 * k], &two = speeds[3 * k + 1],
+                              &plain = speeds[3 * k + 2];
+    std::printf("%7zu %7zu %2d %-7s %-9s  %-22s %-22s %-20s %-16s %s\n",
+                samples[k].grains.size(), samples[k].joints.size(), n_elements,
+                name(state), k == 3 ? "scattered" : "by rows", text(spread(one)).c_str(),
+                text(spread(two)).c_str(), text(spread(plain)).c_str(),
+                text(ratio(one, plain), 1).c_str(), text(ratio(two, one)).c_str());
+  }
+  const auto &damped = speeds[3 * samples.size()],
+             &damped_two = speeds[3 * samples.size() + 1];
+  std::printf("  seconds a grain-step of %zu grains over those of %zu: %s, 2 threads %s\n"
+              "  with damping over without, %zu grains: %s, 2 threads %s\n",
+              samples[2].grains.size(), samples[1].grains.size(),
+              text(ratio(speeds[3], speeds[6])).c_str(),
+              text(ratio(speeds[4], speeds[7])).c_str(), samples[1].grains.size(),
+              text(ratio(speeds[3], damped)).c_str(),
+              text(ratio(speeds[4], damped_two)).c_str());
+  std::fflush(stdout);
 }
 
 void print_steps(const int repetitions)
 {
-  std::printf("\nmillion grain-steps per second: median of %d [slowest, fastest]; one "
-              "thread: of processor time\n%7s %7s %2s %-7s %-9s  %-22s %-22s %-20s %s\n",
-              repetitions, "grains", "joints", "N", "law", "numbering", "1 thread",
-              "2 threads", "plain twin, 1 thread", "ratio");
+  std::printf(
+      "\nmillion grain-steps per second: median of %d slices in turn [least, most]; "
+      "one thread: of processor time\n%7s %7s %2s %-7s %-9s  %-22s %-22s %-20s "
+      "%-16s %s\n",
+      repetitions, "grains", "joints", "N", "law", "numbering", "1 thread", "2 threads",
+      "plain twin, 1 thread", "1 over plain", "2 over 1");
   for (const State state : {State::intact, State::damaged})
     for (const int n_elements : {1, 3})
-      for (const auto &[columns, rows] :
-           {std::pair(30, 50), std::pair(100, 150), std::pair(200, 300)})
-        for (const bool scattered : {false, true})
-        {
-          if (scattered && (rows != 150 || n_elements != 3))
-            continue;
-          Sample sample = rock(columns, rows, n_elements, state, scattered);
-          Sample twin = sample;
-          const Speed one = measure_step(sample, 1, repetitions);
-          const Speed plain = measure_plain_step(twin, repetitions);
-          const Speed two = measure_step(sample, 2, repetitions);
-          std::printf("%7zu %7zu %2d %-7s %-9s  %-22s %-22s %-20s %5.1f\n",
-                      sample.grains.size(), sample.joints.size(), n_elements,
-                      state == State::intact ? "intact" : "full",
-                      scattered ? "scattered" : "by rows", text(one).c_str(),
-                      text(two).c_str(), text(plain).c_str(), one.median / plain.median);
-          std::fflush(stdout);
-        }
+      print_steps(state, n_elements, repetitions);
 }
 
 /// Forces of all joints and their sums by one level's kernels, on one thread.
-Speed measure_kernels(Sample &sample, const KernelLevel &level, const int repetitions)
+Runner kernel_runner(Sample &sample, const KernelLevel &level)
 {
   omp_set_num_threads(1);
   compute_joint_forces(sample.grains, sample.joints, {}, &sample.cracks, false);
-  Grains &grains = sample.grains;
-  Joints &joints = sample.joints;
-  JointWork &work = joints.work;
-  const DamagedKernelInput damaged = damaged_input(joints, true);
-  const auto step = [&]
+  const DamagedKernelInput damaged = damaged_input(sample.joints, true);
+  const auto step = [&sample, level, damaged]
   {
+    Grains &grains = sample.grains;
+    Joints &joints = sample.joints;
+    JointWork &work = joints.work;
     for (std::size_t k = 0; k < joints.damaged.size(); k += 4)
       level.damaged(damaged, k);
     if (joints.damaged.size() > 0)
@@ -237,8 +306,7 @@ Speed measure_kernels(Sample &sample, const KernelLevel &level, const int repeti
                 force, block.end - block.begin, work.sums.data());
     }
   };
-  return measure(step, static_cast<double>(joints.size()), steps_for(sample), 1,
-                 repetitions);
+  return {step, static_cast<double>(sample.joints.size()), steps_for(sample), 1};
 }
 
 void print_contraction(const int repetitions)
@@ -247,18 +315,18 @@ void print_contraction(const int repetitions)
     return;
   std::printf("\nmillion joints per second of processor time, kernels alone, 15,000 "
               "grains, N = 3\n%-7s  %-22s %-22s %s\n",
-              "law", "contraction off", "contraction on", "cost");
+              "law", "contraction off", "contraction on", "on over off");
   for (const State state : {State::intact, State::damaged})
   {
     Sample sample = rock(100, 150, 3, state);
     // The like of it without contraction, also where the processor has a higher level.
-    const KernelLevel level = supported_kernel_levels()[1];
-    const Speed off = measure_kernels(sample, level, repetitions);
-    const Speed on =
-        measure_kernels(sample, level_contracted::kernel_level(), repetitions);
-    std::printf("%-7s  %-22s %-22s %4.1f %%\n",
-                state == State::intact ? "intact" : "full", text(off).c_str(),
-                text(on).c_str(), 100. * (on.median / off.median - 1.));
+    const auto speeds =
+        measure_in_turn({kernel_runner(sample, supported_kernel_levels()[1]),
+                         kernel_runner(sample, level_contracted::kernel_level())},
+                        repetitions);
+    std::printf("%-7s  %-22s %-22s %s\n", name(state), text(spread(speeds[0])).c_str(),
+                text(spread(speeds[1])).c_str(),
+                text(ratio(speeds[1], speeds[0])).c_str());
   }
 }
 

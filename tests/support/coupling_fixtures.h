@@ -331,8 +331,8 @@ public:
     {
       auto &damping = add(std::make_unique<LocalDamping>(&grains, &mesh, options.damping,
                                                          options.combined),
-                          {Stage::damp}, 96, "damping");
-      grain_motion.damping = damping.grain_forces();
+                          {Stage::damp, Stage::kick}, 96, "damping");
+      grain_motion.damped = true;
       mesh_motion.damping = damping.mesh_forces();
     }
     if (options.wall_speed)

@@ -244,10 +244,10 @@ struct ExplicitRun
     if (step > 0)
       add_work(dt);
     before = velocities(grains);
-    const bool damped = damping.coefficient > 0.;
-    if (damped)
-      compute_damping(grains, grains.force_x, grains.force_y, grains.torque, dt, damping);
-    kick(grains, dt, damped ? &damping : nullptr);
+    if (damping.coefficient > 0.)
+      damped_kick(grains, dt, damping);
+    else
+      kick(grains, dt);
   }
 
   void second_half(const double dt)

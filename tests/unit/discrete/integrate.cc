@@ -1,10 +1,12 @@
 #include "discrete/integrate.h"
+#include "discrete/joint_kernel.h"
 
 #include "support/grain_fixtures.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 namespace antiform::discrete::test
 {
@@ -33,8 +35,7 @@ struct MovingGrains
 TEST(GrainDamping, OpposesTheVelocityByAShareOfTheForce)
 {
   MovingGrains moving;
-  const Grains &g = moving.grains;
-  compute_damping(g, g.force_x, g.force_y, g.torque, 0.1, moving.damping);
+  damped_kick(moving.grains, 0.1, moving.damping);
   const double a = 0.7;
   EXPECT_EQ(moving.damping.force_x, (std::vector<double>{-a * 3., a * 4., 0.}));
   EXPECT_EQ(moving.damping.force_y, (std::vector<double>{a * 6., 0., -a * 8.}));
@@ -47,14 +48,15 @@ TEST(GrainDamping, CombinedFollowsTheChangeOfTheForceToo)
   moving.damping.combined = true;
   moving.damping.start(3);
   moving.damping.before_x = {5., 1., 5.}; // falls, rises, stays
-  const Grains &g = moving.grains;
-  compute_damping(g, g.force_x, g.force_y, g.torque, 0.1, moving.damping);
+  Grains &g = moving.grains;
+  const std::vector<double> velocity = g.velocity_x;
+  damped_kick(g, 0.1, moving.damping);
   const double half = 0.35;
   const auto sign = [](const double v) { return v > 0. ? 1. : v < 0. ? -1. : 0.; };
   const std::vector<double> change{-1., 1., 0.};
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_DOUBLE_EQ(moving.damping.force_x[i],
-                     half * std::abs(g.force_x[i]) * (change[i] - sign(g.velocity_x[i])));
+                     half * std::abs(g.force_x[i]) * (change[i] - sign(velocity[i])));
   EXPECT_EQ(moving.damping.before_x, g.force_x);
 }
 
@@ -63,45 +65,112 @@ TEST(GrainDamping, BooksTheWorkOfTheMeanVelocity)
   MovingGrains moving;
   Grains &g = moving.grains;
   const double dt = 0.1;
-  const auto half_work = [&]
+  const auto half_work = [&](const GrainVelocities &v)
   {
     double power = 0.;
     for (std::size_t i = 0; i < g.size(); ++i)
-      power += moving.damping.force_x[i] * g.velocity_x[i] +
-               moving.damping.force_y[i] * g.velocity_y[i] +
-               moving.damping.torque[i] * g.spin[i];
+      power += moving.damping.force_x[i] * v.x[i] + moving.damping.force_y[i] * v.y[i] +
+               moving.damping.torque[i] * v.spin[i];
     return 0.5 * dt * power;
   };
-  compute_damping(g, g.force_x, g.force_y, g.torque, dt, moving.damping);
-  double work = half_work();
+  const GrainVelocities first = velocities(g);
+  damped_kick(g, dt, moving.damping);
+  double work = half_work(first);
   ASSERT_EQ(moving.damping.energy.size(), 1u);
   EXPECT_NEAR(moving.damping.energy[0], -work, 1e-15); // round-off
-  kick(g, dt, &moving.damping);
-  work += half_work(); // of the first forces, by the velocities after the kick
-  compute_damping(g, g.force_x, g.force_y, g.torque, dt, moving.damping);
-  work += half_work();
+  const GrainVelocities second = velocities(g);
+  work += half_work(second); // of the first forces, by the velocities after the kick
+  damped_kick(g, dt, moving.damping);
+  work += half_work(second);
   EXPECT_NEAR(moving.damping.energy[0], -work, 1e-15);
 }
 
-TEST(Kick, AcceleratesByForceAndDampingOverInertia)
+TEST(Kick, AcceleratesByForceOverInertia)
 {
   MovingGrains moving;
   Grains &g = moving.grains;
   hold(g, 1);
-  moving.damping.force_x = {0.5, 0.5, 0.5};
-  moving.damping.force_y = moving.damping.torque = {0., 0., 0.};
   const Grains before = g;
-  kick(g, 0.1, &moving.damping);
+  kick(g, 0.1);
   for (const std::size_t i : {0, 2})
   {
     EXPECT_DOUBLE_EQ(g.velocity_x[i],
-                     before.velocity_x[i] + 0.1 * (before.force_x[i] + 0.5) / g.mass[i]);
+                     before.velocity_x[i] + 0.1 * before.force_x[i] / g.mass[i]);
     EXPECT_DOUBLE_EQ(g.velocity_y[i],
                      before.velocity_y[i] + 0.1 * before.force_y[i] / g.mass[i]);
     EXPECT_DOUBLE_EQ(g.spin[i], before.spin[i] + 0.1 * before.torque[i] / g.inertia[i]);
   }
   EXPECT_EQ(g.velocity_x[1], -0.3); // prescribed motion goes on as it is
   EXPECT_EQ(g.spin[1], 0.5);
+}
+
+TEST(DampedKick, AcceleratesByForceAndDampingOverInertia)
+{
+  MovingGrains moving;
+  Grains &g = moving.grains;
+  hold(g, 1);
+  const Grains before = g;
+  damped_kick(g, 0.1, moving.damping);
+  const GrainDamping &d = moving.damping;
+  for (const std::size_t i : {0, 2})
+  {
+    EXPECT_DOUBLE_EQ(g.velocity_x[i],
+                     before.velocity_x[i] +
+                         0.1 * (before.force_x[i] + d.force_x[i]) / g.mass[i]);
+    EXPECT_DOUBLE_EQ(g.velocity_y[i],
+                     before.velocity_y[i] +
+                         0.1 * (before.force_y[i] + d.force_y[i]) / g.mass[i]);
+    EXPECT_DOUBLE_EQ(g.spin[i], before.spin[i] + 0.1 * (before.torque[i] + d.torque[i]) /
+                                                     g.inertia[i]);
+  }
+  EXPECT_EQ(g.velocity_x[1], -0.3); // held: prescribed motion goes on as it is
+  EXPECT_EQ(g.spin[1], 0.5);
+}
+
+/// Every vector level does what one grain at a time does: the same bits.
+TEST(DampedKick, IsTheSameAtEveryLevelAndForEveryNumberOfGrains)
+{
+  for (const bool combined : {false, true})
+    for (const std::size_t n : {1, 2, 3, 4, 5, 11})
+    {
+      struct State
+      {
+        std::vector<double> force, before, inverse_mass, velocity, damping;
+      } start;
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        const double s = std::sin(1. + 3. * static_cast<double>(i));
+        start.force.push_back(i % 5 == 3 ? 0. : s);
+        start.before.push_back(i % 3 == 0 ? start.force[i] : s * s - 0.3);
+        start.inverse_mass.push_back(i % 4 == 2 ? 0. : 1. + s * s);
+        start.velocity.push_back(i % 6 == 4 ? 0. : s - 0.2);
+        start.damping.push_back(0.1 * s);
+      }
+      const auto kick = [&](const KernelLevel &level, State &s, const std::size_t begin,
+                            const std::size_t end)
+      {
+        return level.damped_kick(
+            {0.7, 0.1, s.force.data(), combined ? s.before.data() : nullptr,
+             s.inverse_mass.data(), s.velocity.data(), s.damping.data()},
+            begin, end);
+      };
+      State single = start;
+      double power = 0.;
+      for (std::size_t i = 0; i < n; ++i)
+        power += kick(supported_kernel_levels().front(), single, i, i + 1);
+      std::set<double> powers;
+      for (const KernelLevel &level : supported_kernel_levels())
+      {
+        State all = start;
+        const double its_power = kick(level, all, 0, n);
+        EXPECT_EQ(all.velocity, single.velocity) << level.name << ", " << n;
+        EXPECT_EQ(all.damping, single.damping) << level.name << ", " << n;
+        EXPECT_EQ(all.before, combined ? start.force : start.before);
+        EXPECT_NEAR(its_power, power, 1e-14); // another order of the sum
+        powers.insert(its_power);
+      }
+      EXPECT_EQ(powers.size(), 1u);
+    }
 }
 
 TEST(Drift, MovesByTheVelocities)

@@ -78,8 +78,7 @@ void relax(ExplicitRun &run,
     Grains &g = run.sample.grains;
     run.add_forces(dt);
     load(g);
-    compute_damping(g, g.force_x, g.force_y, g.torque, dt, run.damping);
-    kick(g, dt, &run.damping);
+    damped_kick(g, dt, run.damping);
     drift(g, dt);
   }
 }

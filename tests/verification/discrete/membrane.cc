@@ -123,9 +123,7 @@ TEST(Membrane, BodyInAClosedRingHasItsPressure)
   {
     run.add_forces(dt);
     add_membrane_forces(grains, membrane, pressure * std::min(1., n / 2000.));
-    compute_damping(grains, grains.force_x, grains.force_y, grains.torque, dt,
-                    run.damping);
-    kick(grains, dt, &run.damping);
+    damped_kick(grains, dt, run.damping);
     drift(grains, dt);
     ++run.step;
     run.time += dt;
