@@ -134,7 +134,8 @@ void declare(discrete::StrengthScatter &scatter, Declarations &entries)
   entries.enter("Strength scatter");
   entries.number("Tensile strength deviation", scatter.tension,
                  "Standard deviation over the mean of the tensile strength from joint to "
-                 "joint; normal, within three deviations [-].",
+                 "joint; normal, within three deviations and not below 0.05 of the "
+                 "mean (which is so 3 % higher at 0.5) [-].",
                  Number::at_least(0.).up_to(0.5));
   entries.number("Cohesion deviation", scatter.cohesion,
                  "The same of the cohesion (the shear strength of a contact bond) [-].",

@@ -172,10 +172,18 @@ class Figure:
         self.figure.text(LEFT / self.width, 1. - 0.54 / self.height, state, fontsize=11)
 
     def legend(self, handles):
-        self.figure.legend(handles=handles, ncol=len(handles), frameon=False, fontsize=10,
-                           loc="upper left", handlelength=1.6, columnspacing=1.6,
-                           bbox_to_anchor=(LEFT / self.width, 1. - 0.64 / self.height),
-                           borderpad=0., borderaxespad=0.)
+        """One row, in smaller letters where it would not fit."""
+        room = (self.width - LEFT) * self.figure.dpi
+        for size in (10., 9., 8., 7., 6., 5.):
+            legend = self.figure.legend(
+                handles=handles, ncol=len(handles), frameon=False, fontsize=size,
+                loc="upper left", handlelength=1.6, columnspacing=1.6,
+                bbox_to_anchor=(LEFT / self.width, 1. - 0.64 / self.height),
+                borderpad=0., borderaxespad=0.)
+            if legend.get_window_extent(self.figure.canvas.get_renderer()).width <= room:
+                return
+            if size > 5.:
+                legend.remove()
 
     def colour_bar(self, axes, mappable, label):
         axes.set_title(label, loc="left", fontsize=11)
