@@ -1,6 +1,13 @@
 #include "continuum/layer_theory.h"
 
+#include "continuum/bonded_theory.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_min.h>
+
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +25,34 @@ double square(const double x)
 /// Beyond this k H hyperbolic functions overflow long after every Phi has become 1 to
 /// round-off (chi^2 exp(-2 chi) < 1e-26).
 constexpr double deep = 35.;
+
+/// Where @p f is least between @p low < 0 and @p high > 0, at which it is above f(0).
+/// Brent's method; it is exact relative to the place, hence the 0 in the middle.
+double place_of_minimum(const std::function<double(double)> &f,
+                        const double low,
+                        const double high)
+{
+  gsl_function function;
+  function.params = const_cast<std::function<double(double)> *>(&f);
+  function.function = [](const double x, void *self)
+  { return (*static_cast<std::function<double(double)> *>(self))(x); };
+  const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimum(
+      gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
+  // To the root of round-off, beyond which the values of a minimum do not differ.
+  constexpr double tolerance = 1e-9;
+  gsl_error_handler_t *const before = gsl_set_error_handler_off();
+  int status = gsl_min_fminimizer_set(minimum.get(), &function, 0., low, high);
+  for (int i = 0; i < 200 && status == GSL_SUCCESS; ++i)
+  {
+    status = gsl_min_fminimizer_iterate(minimum.get());
+    if (gsl_min_fminimizer_x_upper(minimum.get()) -
+            gsl_min_fminimizer_x_lower(minimum.get()) <
+        tolerance * (high - low))
+      break;
+  }
+  gsl_set_error_handler(before);
+  return gsl_min_fminimizer_x_minimum(minimum.get());
+}
 } // namespace
 
 double plane_modulus(const double young_modulus, const double poisson_ratio)
@@ -176,6 +211,8 @@ double SupportedLayer::bending_force(const double wavenumber) const
 
 double SupportedLayer::support_stiffness(const double wavenumber) const
 {
+  if (bonded)
+    return direct_foundation + bonded_support_stiffness(layer, sides, wavenumber);
   double sum = direct_foundation;
   for (const Side &side : sides)
     sum += side.stiffness(wavenumber);
@@ -207,16 +244,13 @@ std::optional<CriticalState> SupportedLayer::critical() const
   if (best == 0 || best == n)
     return std::nullopt;
 
-  double low = best - 1., high = best + 1.;
-  for (unsigned int i = 0; i < 60; ++i) // trisection to round-off
-  {
-    const double a = low + (high - low) / 3., b = high - (high - low) / 3.;
-    if (force(a) < force(b))
-      high = b;
-    else
-      low = a;
-  }
-  const double k = std::exp(log_k(0.5 * (low + high)));
+  // Of equal neighbours the one after the last, so that both ends are higher.
+  int after = best + 1;
+  while (after < n && !(force(after) > force(best)))
+    ++after;
+  const double shift = place_of_minimum([&](const double i) { return force(best + i); },
+                                        -1., after - best);
+  const double k = std::exp(log_k(best + shift));
   const double least = buckling_force(k);
   return CriticalState{least, least / layer.thickness, k, 2. * pi / k};
 }

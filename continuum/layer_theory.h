@@ -119,16 +119,18 @@ struct CriticalState
 struct SupportedLayer
 {
   Layer layer;
-  std::vector<Side> sides;       ///< none, one or two
+  std::vector<Side> sides;       ///< none, one or two (above and below)
   double direct_foundation = 0.; ///< springs or buoyancy on the layer itself [Pa/m]
   bool thick = false;            ///< with thick_bending_force() for D k^2
+  bool bonded = false;           ///< the sides stick to the layer; else they slide on it
 
   /// K(k): all sides and the direct foundation [Pa/m].
   double support_stiffness(double wavenumber) const;
   /// N(k) = D k^2 + K(k) / k^2 [N/m].
   double buckling_force(double wavenumber) const;
   /// The least N(k) for wavelengths between 1e-1 and 1e6 thicknesses; nothing if N(k)
-  /// falls towards the longest wave: then the length of the layer decides.
+  /// falls towards the longest wave: then the length of the layer decides. The wave is
+  /// found to some 1e-8 of itself: a minimum is flat.
   std::optional<CriticalState> critical() const;
   /// The least N among m half waves between pinned ends (wavelength above h / 10).
   Mode critical_mode(double length) const;
