@@ -1,18 +1,40 @@
 #include "cases/mechanism.h"
 
-#include "continuum/layer_theory.h"
-
 #include <cmath>
-#include <vector>
 
 namespace antiform::cases
 {
 namespace theory = continuum::theory;
 
+theory::Layer layer_of(const Parameters &p)
+{
+  return {p.layer.young_modulus, p.layer.poisson_ratio, p.layer.thickness};
+}
+
+std::vector<theory::Side> matrix_sides(const Parameters &p)
+{
+  if (!p.has("matrix"))
+    return {};
+  const double E0 = p.matrix_modulus(), nu0 = p.matrix.poisson_ratio;
+  const double h = p.layer.thickness;
+  const theory::Side cover{E0, nu0, p.matrix.burial_depth_ratio * h,
+                           theory::Side::FarFace::free, 0.};
+  theory::Side base{E0, nu0, p.matrix.base_depth_ratio * h,
+                    theory::Side::FarFace::smooth_rigid, 0.};
+  if (p.has("foundation"))
+  {
+    base.far_face = theory::Side::FarFace::spring;
+    base.far_spring = p.foundation.stiffness_ratio * E0 / h;
+  }
+  else if (p.matrix.base == "fixed")
+    base.far_face = theory::Side::FarFace::rough_rigid;
+  return {cover, base};
+}
+
 Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
 {
   const LayerParameters &l = p.layer;
-  const theory::Layer layer{l.young_modulus, l.poisson_ratio, l.thickness};
+  const theory::Layer layer = layer_of(p);
   Mechanism e{};
   // The thesis' plot uses E and not the plane modulus; so do its ratios here.
   e.slenderness_ratio = theory::slenderness_ratio(l.young_modulus, l.compressive_strength,
@@ -20,25 +42,8 @@ Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
   e.critical_length_ratio =
       theory::critical_slenderness(l.young_modulus, l.compressive_strength) /
       std::sqrt(12.);
-  std::vector<theory::Side> sides;
-  if (p.has("matrix"))
-  {
-    const double E0 = p.matrix_modulus(), nu0 = p.matrix.poisson_ratio;
-    sides.push_back({E0, nu0, p.matrix.burial_depth_ratio * l.thickness,
-                     theory::Side::FarFace::free, 0.});
-    theory::Side base{E0, nu0, p.matrix.base_depth_ratio * l.thickness,
-                      theory::Side::FarFace::smooth_rigid, 0.};
-    if (p.has("foundation"))
-    {
-      base.far_face = theory::Side::FarFace::spring;
-      base.far_spring = p.foundation.stiffness_ratio * E0 / l.thickness;
-    }
-    else if (p.matrix.base == "fixed")
-      base.far_face = theory::Side::FarFace::rough_rigid;
-    sides.push_back(base);
-  }
   const theory::SupportedLayer bare{layer, {}, 0., false};
-  const theory::SupportedLayer buried{layer, sides, 0., false};
+  const theory::SupportedLayer buried{layer, matrix_sides(p), 0., false};
   // Ends that may turn: half a wave in L; ends guided by the walls: a full wave.
   const double half = M_PI / g.wavelength(), full = 2. * half;
   const double crushing = l.compressive_strength * l.thickness;

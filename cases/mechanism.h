@@ -1,11 +1,15 @@
 #pragma once
 
 #include "cases/geometry.h"
+#include "continuum/layer_theory.h"
+
+#include <vector>
 
 namespace antiform::cases
 {
-/// How the layer of a deck is expected to fail, by closed forms (docs/theory/continuum.md).
-/// gamma is a buckling load over the load that crushes the layer.
+/// How the layer of a deck is expected to fail, by closed forms
+/// (docs/theory/continuum.md). gamma is a buckling load over the load that crushes the
+/// layer.
 struct Mechanism
 {
   double slenderness_ratio;     ///< Lambda [-]
@@ -17,6 +21,13 @@ struct Mechanism
   /// Share of the crushing strain at which the layer gives way [-].
   double relative_strength() const { return pinned < 1. ? pinned : 1.; }
 };
+
+/// The deck's layer as the closed forms see it: one layer, whatever its beds.
+continuum::theory::Layer layer_of(const Parameters &p);
+
+/// What lies above and below the layer: the cover with a free top, and the base on what
+/// it stands on. None without a matrix.
+std::vector<continuum::theory::Side> matrix_sides(const Parameters &p);
 
 Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g);
 } // namespace antiform::cases
