@@ -85,6 +85,36 @@ void add_check(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::check; });
 }
 
+void add_theory(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "theory",
+      "the closed forms for a deck's scene: regime, critical stress, wavelength, mechanism");
+  add_deck(command, line.run);
+  command.add_flag("--json", line.theory.json, "for programs (SI units)");
+  command
+      .add_option("--plot", line.theory.plot,
+                  "draw the diagram of gamma against Lambda into this file")
+      ->check(
+          [](const std::string &name)
+          {
+            const bool is_svg =
+                name.size() > 4 && name.compare(name.size() - 4, 4, ".svg") == 0;
+            return is_svg ? "" : "give a name that ends in .svg";
+          })
+      ->type_name("FILE.svg");
+  command
+      .add_option("--friction-angle", line.theory.friction_angle,
+                  "of the rock, by which confinement adds to its strength; 'antiform "
+                  "envelope' finds it (42, that of rock 1) [degrees]")
+      ->check(CLI::Range(0., 80.))
+      ->type_name("DEGREES");
+  command.footer("Example:\n  antiform theory cases/burial-depth/anticline.prm\n"
+                 "  antiform theory cases/burial-depth/anticline.prm --plot diagram.svg "
+                 "--set \"Matrix/Burial depth ratio=10\"");
+  command.callback([&line] { line.command = CommandLine::Command::theory; });
+}
+
 void add_parameters(CLI::App &app, CommandLine &line)
 {
   CLI::App &command =
@@ -110,7 +140,7 @@ void add_envelope(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::envelope; });
 }
 
-const std::vector<std::string> planned = {"study", "compare", "theory", "report"};
+const std::vector<std::string> planned = {"study", "compare", "report"};
 } // namespace
 
 CommandLine parse_command_line(const std::vector<std::string> &arguments)
@@ -119,7 +149,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
       std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
     throw InputError({"antiform " + arguments.front() +
                       ": does not exist yet in this version. What exists: run, check, "
-                      "parameters, envelope, calibrate."});
+                      "theory, parameters, envelope, calibrate."});
 
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
@@ -129,6 +159,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
              "'antiform COMMAND --help' says more.");
   add_run(app, line);
   add_check(app, line);
+  add_theory(app, line);
   add_parameters(app, line);
   add_envelope(app, line);
   add_calibrate(app, line);

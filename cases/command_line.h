@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cases/program.h"
+#include "cases/theory.h"
 
 #include <string>
 #include <vector>
@@ -15,13 +16,15 @@ struct CommandLine
     help, ///< print help_text
     run,
     check,
+    theory,
     parameters,
     envelope,
     calibrate
   };
   Command command = Command::help;
   std::string help_text;
-  RunOptions run;                   ///< deck and overrides of `check` and `calibrate` too
+  RunOptions run;                   ///< deck and overrides of the others too
+  TheoryOptions theory;             ///< theory --json, --plot, --friction-angle
   bool json = false;                ///< check --json, envelope --json
   bool markdown = false;            ///< parameters --markdown
   std::string name;                 ///< parameters NAME

@@ -2,6 +2,7 @@
 #include "cases/command_line.h"
 #include "cases/output_directory.h"
 #include "cases/strength_envelope.h"
+#include "cases/theory.h"
 #include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
@@ -70,6 +71,13 @@ int check_deck(const CommandLine &line)
              : check(parameters, line.json, std::cout);
 }
 
+int theory_of_deck(const CommandLine &line)
+{
+  const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
+  demand_calibration(parameters, false);
+  return print_theory(parameters, line.theory, std::cout);
+}
+
 int calibrate_deck(const CommandLine &line)
 {
   const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
@@ -96,6 +104,8 @@ int execute(const CommandLine &line, MPI_Comm communicator)
                std::cout << line.help_text;
              else if (line.command == CommandLine::Command::check)
                status = check_deck(line);
+             else if (line.command == CommandLine::Command::theory)
+               status = theory_of_deck(line);
              else if (line.command == CommandLine::Command::calibrate)
                status = calibrate_deck(line);
              else if (line.command == CommandLine::Command::envelope)
