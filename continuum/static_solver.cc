@@ -18,22 +18,11 @@ using namespace dealii;
 
 namespace
 {
-// KLU, which works on one rank, beats MUMPS below about this size and loses above it.
-constexpr types::global_dof_index largest_klu_problem = 20000;
-
 /// Share of the load that a factor may leave unbalanced: round-off times the condition of
 /// slender strips (some 1e12), and far below that of a singular matrix, 1.
 constexpr double largest_rest = 1e-3;
 
 constexpr double unset = std::numeric_limits<double>::lowest();
-
-NumericalError singular(const double value, const double limit)
-{
-  return NumericalError("static solver",
-                        "the equations have no solution; is a part of the body without "
-                        "support, or the load at the buckling load? Backward error",
-                        value, limit);
-}
 } // namespace
 
 void prescribe(const ElasticSolid &solid,
@@ -85,20 +74,7 @@ StaticSolver::StaticSolver(const ElasticSolid &solid,
 
   if (options_.method == Method::direct)
   {
-    const bool small = solid.dof_handler().n_dofs() <= largest_klu_problem;
-    const bool alone =
-        Utilities::MPI::n_mpi_processes(solid.dof_handler().get_communicator()) == 1;
-    direct_ = std::make_unique<TrilinosWrappers::SolverDirect>(
-        direct_control_, TrilinosWrappers::SolverDirect::AdditionalData(
-                             false, alone && small ? "Amesos_Klu" : "Amesos_Mumps"));
-    try
-    {
-      direct_->initialize(reduced_);
-    }
-    catch (const ExceptionBase &)
-    {
-      throw singular(std::numeric_limits<double>::quiet_NaN(), options_.tolerance);
-    }
+    direct_ = std::make_unique<DirectSolver>(reduced_);
     return;
   }
   TrilinosWrappers::PreconditionAMG::AdditionalData settings;
@@ -190,7 +166,7 @@ unsigned int StaticSolver::solve(const Vector &force, Vector &displacement) cons
   unsigned int iterations = 1;
   displacement.zero_out_ghost_values();
   if (direct_)
-    factor_solve(rhs, displacement);
+    direct_->solve(rhs, displacement);
   else
     iterations = iterate(rhs, displacement);
   verify(rhs, displacement);
@@ -219,18 +195,6 @@ unsigned int StaticSolver::iterate(const Vector &rhs, Vector &displacement) cons
   return control.last_step();
 }
 
-void StaticSolver::factor_solve(const Vector &rhs, Vector &displacement) const
-{
-  try
-  {
-    direct_->solve(displacement, rhs);
-  }
-  catch (const ExceptionBase &)
-  {
-    throw singular(std::numeric_limits<double>::quiet_NaN(), options_.tolerance);
-  }
-}
-
 /// Throw unless the equations hold. Conjugate gradients are asked too: the residual that
 /// they carry along departs from the true one when the matrix is singular.
 void StaticSolver::verify(const Vector &rhs, const Vector &displacement) const
@@ -242,9 +206,9 @@ void StaticSolver::verify(const Vector &rhs, const Vector &displacement) const
   // that the backward error alone would pass it.
   const double load = rhs.l2_norm(), rest = residual.l2_norm();
   if (!(rest <= largest_rest * load)) // also for not-a-number
-    throw singular(rest / load, largest_rest);
+    DirectSolver::refuse_singular(rest / load, largest_rest);
   const double scale = load + norm_ * displacement.l2_norm();
   if (rest > options_.tolerance * scale)
-    throw singular(rest / scale, options_.tolerance);
+    DirectSolver::refuse_singular(rest / scale, options_.tolerance);
 }
 } // namespace antiform::continuum

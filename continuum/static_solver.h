@@ -1,11 +1,10 @@
 #pragma once
 
+#include "continuum/direct_solver.h"
 #include "continuum/elastic_solid.h"
 #include "continuum/errors.h"
 
-#include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
 
 #include <functional>
 #include <map>
@@ -36,7 +35,7 @@ public:
   {
     conjugate_gradients, ///< with algebraic multigrid (ML), translations as near-null
                          ///< space
-    direct ///< KLU for small problems on one rank, else MUMPS; K may be indefinite
+    direct               ///< DirectSolver; K may be indefinite
   };
   struct Options
   {
@@ -69,7 +68,6 @@ private:
   Vector spread(const DirichletValues &values) const;
   void eliminate_prescribed();
   unsigned int iterate(const Vector &rhs, Vector &displacement) const;
-  void factor_solve(const Vector &rhs, Vector &displacement) const;
   void verify(const Vector &rhs, const Vector &displacement) const;
 
   const ElasticSolid &solid_;
@@ -80,7 +78,6 @@ private:
   dealii::TrilinosWrappers::SparseMatrix reduced_;
   double norm_ = 0.; ///< largest row sum of the reduced matrix [N/m]
   std::unique_ptr<dealii::TrilinosWrappers::PreconditionAMG> preconditioner_;
-  mutable dealii::SolverControl direct_control_;
-  std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> direct_;
+  std::unique_ptr<DirectSolver> direct_;
 };
 } // namespace antiform::continuum
