@@ -218,21 +218,22 @@ void ElasticSolid::assemble_stiffness()
            });
 }
 
-TrilinosMatrix
-ElasticSolid::geometric_stiffness(const SymmetricTensor<2, 2> &initial_stress) const
+template <class Stress>
+TrilinosMatrix ElasticSolid::geometric_stiffness_of(const Stress &stress) const
 {
   TrilinosMatrix matrix;
   matrix.reinit(stiffness_);
   const unsigned int n = fe_.n_dofs_per_cell();
   assemble(dof_handler_, matrix,
-           [&](const auto &, const FEValues<2> &values, FullMatrix<double> &K)
+           [&](const auto &cell, const FEValues<2> &values, FullMatrix<double> &K)
            {
              for (const unsigned int q : values.quadrature_point_indices())
              {
                const double w = weight(values.quadrature_point(q)) * values.JxW(q);
+               const SymmetricTensor<2, 2> initial = stress(cell, values, q);
                for (unsigned int i = 0; i < n; ++i)
                {
-                 const Tensor<1, 2> pull = w * (initial_stress * values.shape_grad(i, q));
+                 const Tensor<1, 2> pull = w * (initial * values.shape_grad(i, q));
                  for (unsigned int j = 0; j < n; ++j)
                    if (fe_.system_to_component_index(i).first ==
                        fe_.system_to_component_index(j).first)
@@ -241,6 +242,38 @@ ElasticSolid::geometric_stiffness(const SymmetricTensor<2, 2> &initial_stress) c
              }
            });
   return matrix;
+}
+
+TrilinosMatrix
+ElasticSolid::geometric_stiffness(const SymmetricTensor<2, 2> &initial_stress) const
+{
+  return geometric_stiffness_of([&](const auto &, const FEValues<2> &, unsigned int)
+                                { return initial_stress; });
+}
+
+TrilinosMatrix ElasticSolid::geometric_stiffness(const Vector &displacement) const
+{
+  const unsigned int n = fe_.n_dofs_per_cell();
+  std::vector<types::global_dof_index> dofs(n);
+  return geometric_stiffness_of(
+      [&](const auto &cell, const FEValues<2> &values, const unsigned int q)
+      {
+        cell->get_dof_indices(dofs);
+        std::array<double, 3> strain{};
+        for (unsigned int i = 0; i < n; ++i)
+        {
+          const auto of_dof =
+              strain_of(fe_.system_to_component_index(i).first, values.shape_grad(i, q));
+          for (unsigned int k = 0; k < 3; ++k)
+            strain[k] += of_dof[k] * displacement(dofs[i]);
+        }
+        const auto s = stress_of(material(cell->material_id()), strain);
+        SymmetricTensor<2, 2> stress;
+        stress[0][0] = s[0];
+        stress[1][1] = s[1];
+        stress[0][1] = s[2];
+        return stress;
+      });
 }
 
 void ElasticSolid::assemble_mass()

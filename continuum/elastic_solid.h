@@ -86,6 +86,9 @@ public:
   /// (tension positive) [N/m]; same sparsity as stiffness().
   dealii::TrilinosWrappers::SparseMatrix
   geometric_stiffness(const dealii::SymmetricTensor<2, 2> &initial_stress) const;
+  /// The same of the stress that @p displacement (ghosts set) makes in the materials.
+  dealii::TrilinosWrappers::SparseMatrix
+  geometric_stiffness(const Vector &displacement) const;
   /// Lumped mass (Gauss-Lobatto points, so positive for Q2 too), weighted: w_C rho [kg].
   const Vector &lumped_mass() const { return lumped_mass_; }
 
@@ -138,6 +141,10 @@ private:
 
   void make_dofs();
   void assemble_stiffness();
+  /// \param stress of (cell, its FEValues, quadrature point)
+  template <class Stress>
+  dealii::TrilinosWrappers::SparseMatrix
+  geometric_stiffness_of(const Stress &stress) const;
   void assemble_mass();
   void build_rows();
   dealii::TrilinosWrappers::SparseMatrix make_matrix() const;
