@@ -1,12 +1,10 @@
-"""Many specimens at once: what the studies beside this file share."""
+"""Many runs at once: what the studies in the directories here share."""
 import concurrent.futures
 import csv
 import json
 import os
 import subprocess
 import sys
-
-HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def run(antiform, directory, deck, entries):
@@ -43,10 +41,3 @@ def write_table(rows, path):
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
-
-
-def add_arguments(parser):
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the report")
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
