@@ -93,7 +93,7 @@ void print_mechanism(const Parameters &p, const Mechanism &e, std::ostream &out)
            "with guided ends). Raise 'Layer/"
         << (p.layer.length_ratio > 0. ? "Length ratio" : "Slenderness ratio") << "'"
         << (p.has("matrix") ? " or 'Matrix/Stiffness contrast'" : "") << ".\n";
-  else if (e.guided > 1.)
+  else if (e.guided > 1. && p.layer.shape != "straight")
     out << "  the bare estimate with guided ends is above gamma = 1: bent beforehand, "
            "the "
            "layer folds and breaks at once\n";

@@ -104,8 +104,8 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
                         "gravity or surface pressure: the section was laid down under it",
                         "neither gravity nor surface pressure"));
-  const bool steps = p.run.driver != "static";
-  const std::string no_steps = "the static driver takes no steps in time";
+  const bool steps = p.run.steps_in_time();
+  const std::string no_steps = "the " + p.run.driver + " driver takes no steps in time";
   list.push_back(choose("motion of the grains", grains && steps,
                         "the grains step in time",
                         grains ? no_steps : "nothing is grains"));

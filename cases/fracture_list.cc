@@ -244,7 +244,7 @@ void check_fractures(const Parameters &p, std::vector<Finding> &findings)
                         "out."});
     return;
   }
-  if (p.run.driver == "static")
+  if (!p.run.steps_in_time())
     findings.push_back({{"Components", "Run/Driver"},
                         "fractures slide, which the static driver cannot follow. Give "
                         "quasi-static."});

@@ -23,8 +23,8 @@ SectionGeometry::SectionGeometry(const Parameters &p)
   }
   if (p.is_bridged())
     buffer_ = p.bridging.buffer * diameter_;
-  const double cell = p.matrix.cell_size * diameter_;
-  n_columns_ = std::max(1u, static_cast<unsigned int>(std::lround(length_ / cell)));
+  const double width = p.matrix.cell_aspect * p.matrix.cell_size * diameter_;
+  n_columns_ = std::max(1u, static_cast<unsigned int>(std::lround(length_ / width)));
 }
 
 double SectionGeometry::axis(const double x) const

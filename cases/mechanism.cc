@@ -44,9 +44,16 @@ Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
       std::sqrt(12.);
   const theory::SupportedLayer bare{layer, {}, 0., false};
   const theory::SupportedLayer buried{layer, matrix_sides(p), 0., false};
+  const double crushing = l.compressive_strength * l.thickness;
+  if (l.shape == "straight") // free to choose among m half waves, whatever its ends
+  {
+    e.bare_pinned = e.bare_guided = bare.critical_mode(g.length()).force / crushing;
+    e.pinned = e.guided = buried.critical_mode(g.length()).force / crushing;
+    e.crushes_first = e.guided > 1.5;
+    return e;
+  }
   // Ends that may turn: half a wave in L; ends guided by the walls: a full wave.
   const double half = M_PI / g.wavelength(), full = 2. * half;
-  const double crushing = l.compressive_strength * l.thickness;
   e.bare_pinned = bare.buckling_force(half) / crushing;
   e.bare_guided = bare.buckling_force(full) / crushing;
   e.pinned = buried.buckling_force(half) / crushing;

@@ -11,6 +11,7 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
   const double d = geometry.diameter(), cell = p.matrix.cell_size * d;
   const double largest = p.matrix.largest_cell * d;
   const bool layer_is_mesh = p.layer.representation == "continuum";
+  const bool joined = p.matrix.interface != "sliding"; // else faces lie on one another
   const double uniform = layer_is_mesh ? 0. : p.bridging.overlap * d;
   const auto core_top = [&geometry](const double x) { return geometry.core_top(x); };
   const auto core_bottom = [&geometry](const double x)
@@ -30,7 +31,7 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
   {
     const int rows =
         std::max(2, static_cast<int>(std::lround(geometry.thickness() / cell)));
-    continuum::Strip layer{core_bottom, core_top, {}, 1, geometry.has_matrix()};
+    continuum::Strip layer{core_bottom, core_top, {}, 1, geometry.has_matrix() && joined};
     for (int r = 0; r <= rows; ++r)
       layer.rows.push_back(static_cast<double>(r) / rows);
     strips.push_back(layer);
@@ -40,7 +41,7 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
     const double height = geometry.surface() - geometry.core_top(0.);
     strips.push_back({core_top, surface,
                       continuum::graded_rows(height, cell, uniform, 1.3, largest, false),
-                      0, layer_is_mesh});
+                      0, layer_is_mesh && joined});
   }
   return strips;
 }

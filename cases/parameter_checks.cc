@@ -93,8 +93,7 @@ void check_specimen(const Parameters &p, Findings &findings)
     findings.push_back({{"Components"},
                         "servo walls and membrane both confine the specimen. Give one of "
                         "them."});
-  if (p.confinement() != nullptr &&
-      p.confinement()->pressure > 0.02 * p.young_modulus())
+  if (p.confinement() != nullptr && p.confinement()->pressure > 0.02 * p.young_modulus())
     findings.push_back({{p.has("membrane") ? "Membrane/Pressure" : "Servo walls/Pressure",
                          "Layer/Young modulus"},
                         "more than 2 % of the rock's Young's modulus, beyond the small "
@@ -137,9 +136,10 @@ void check_bonds(const Parameters &p, Findings &findings)
 {
   const discrete::BondConstants bond = discrete::constants(p.layer.law());
   const bool flat = p.layer.bond_model == "flat joint";
-  const std::string section = flat                                    ? "Layer/Flat joint"
-                              : p.layer.bond_model == "parallel bond" ? "Layer/Parallel bond"
-                                                                      : "Layer/Contact bond";
+  const std::string section = flat ? "Layer/Flat joint"
+                              : p.layer.bond_model == "parallel bond"
+                                  ? "Layer/Parallel bond"
+                                  : "Layer/Contact bond";
   const std::string cohesion =
       section + (section == "Layer/Contact bond" ? "/Shear strength" : "/Cohesion");
   if (bond.breakable && bond.tensile_strength == 0. && bond.cohesion == 0.)
@@ -168,12 +168,12 @@ void check_modulus(const Parameters &p, Findings &findings)
   const double rock = p.layer.young_modulus;
   const double bonds = discrete::joint_modulus(p.layer.law());
   if (!(bonds < factor * rock && rock < factor * bonds))
-    findings.push_back(
-        {{"Layer/Young modulus",
-          p.layer.bond_model == "flat joint" ? "Layer/Flat joint/Effective modulus"
-                                             : "Layer/Bond model"},
-         "the rock's modulus is " + short_text(rock) + " Pa and that of its bonds " +
-             short_text(bonds) + " Pa, which cannot belong together. Give both in Pa."});
+    findings.push_back({{"Layer/Young modulus", p.layer.bond_model == "flat joint"
+                                                    ? "Layer/Flat joint/Effective modulus"
+                                                    : "Layer/Bond model"},
+                        "the rock's modulus is " + short_text(rock) +
+                            " Pa and that of its bonds " + short_text(bonds) +
+                            " Pa, which cannot belong together. Give both in Pa."});
 }
 
 /// What holds for any rock of the layer, be it that of a bed.
@@ -245,11 +245,22 @@ void check_matrix(const Parameters &p, Findings &findings)
          "a layer of finite elements in a matrix of grains does not exist. "
          "Set 'Layer/Representation' = 'grains', or this to 'continuum'."});
 
-  if (p.layer.representation == "continuum" && m.interface != "cemented")
+  if (p.layer.representation == "continuum" && m.interface == "frictionless")
     findings.push_back(
         {{"Matrix/Interface", "Layer/Representation"},
-         "a layer of finite elements shares its nodes with the matrix. Give "
-         "cemented, or 'Layer/Representation' = 'grains'."});
+         "a layer of finite elements does not part from its matrix. Give cemented, with "
+         "'Run/Driver' = 'buckling' also sliding, or 'Layer/Representation' = "
+         "'grains'."});
+  if (m.interface == "sliding" &&
+      (p.layer.representation == "grains" || p.run.driver != "buckling"))
+    findings.push_back(
+        {{"Matrix/Interface", "Layer/Representation", "Run/Driver"},
+         "only the buckling driver, on a layer of finite elements, has a contact that "
+         "slides and does not open. Give cemented, or frictionless to a layer of "
+         "grains."});
+  if (m.cell_aspect > 1. && (p.layer.representation == "grains"))
+    findings.push_back({{"Matrix/Cell aspect ratio", "Layer/Representation"},
+                        "beside grains cells are as wide as high. Give 1."});
 
   const bool has_grains = m.representation == "grains" || p.is_bridged();
   if (has_grains && (m.poisson_ratio < 0.01 || m.poisson_ratio > 0.235))
@@ -334,17 +345,34 @@ void check_run(const Parameters &p, Findings &findings)
         {{"Run/End shortening", "Run/Longest shortening"},
          "beyond 'Run/Longest shortening' = " + short_text(p.run.longest_shortening) +
              ", where the run would be given up. Raise that, or end sooner."});
-  if (p.run.driver == "static" && p.has("layer") && p.layer.representation == "grains")
-    findings.push_back(
-        {{"Run/Driver", "Layer/Representation"},
-         "the static driver solves the elastic continuum, and the layer is "
-         "grains. Give quasi-static, or 'Layer/Representation' = "
-         "'continuum'."});
+  if (!p.run.steps_in_time() && p.has("layer") && p.layer.representation == "grains")
+    findings.push_back({{"Run/Driver", "Layer/Representation"},
+                        "the " + p.run.driver +
+                            " driver solves the elastic continuum, and the layer is "
+                            "grains. Give quasi-static, or 'Layer/Representation' = "
+                            "'continuum'."});
   if (p.run.driver == "static" && p.has("walls") && p.run.end_shortening == 0.)
     findings.push_back(
         {{"Run/End shortening", "Run/Driver"},
          "the static driver does not look for a peak. Give the shortening to "
          "go to, > 0."});
+}
+
+/// What the linear theory of buckling leaves out.
+void check_buckling(const Parameters &p, Findings &findings)
+{
+  const auto find = [&](std::vector<std::string> entries, const std::string &text) {
+    findings.push_back({std::move(entries), text});
+  };
+  if (p.layer.shape != "straight")
+    find({"Layer/Shape", "Run/Driver"},
+         "a layer that is bent beforehand has no buckling load. Give straight.");
+  for (const std::string load : {"gravity", "surface pressure"})
+    if (p.has(load))
+      find({"Components", "Run/Driver"},
+           "the buckling driver knows one load, the shortening by the walls, and "
+           "ignores none. Remove " +
+               load + " from 'Components'.");
 }
 
 void check_memory(const Parameters &p, Findings &findings)
@@ -399,6 +427,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.is_bridged())
     check_bridging(p, findings);
   check_run(p, findings);
+  if (p.has("layer") && p.run.driver == "buckling")
+    check_buckling(p, findings);
   if (p.has("layer") && p.has("fractures"))
     check_fractures(p, findings);
   if (p.has("calibration"))

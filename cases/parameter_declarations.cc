@@ -21,6 +21,10 @@ void declare_matrix_mesh(MatrixParameters &matrix, Declarations &entries)
       "Largest cell ratio", matrix.largest_cell,
       "Height of the cells away from the layer over the mean grain diameter [-].",
       Number::above(0.));
+  entries.number("Cell aspect ratio", matrix.cell_aspect,
+                 "Width of the columns of cells over the size of the cells near the "
+                 "layer; more than 1 only without grains [-].",
+                 Number::at_least(1.));
   entries.whole("Element degree", matrix.element_degree,
                 "Polynomial degree of the finite elements [-].", Number::between(1, 2));
 }
@@ -54,9 +58,9 @@ void declare(MatrixParameters &matrix, Declarations &entries)
       "x) or fixed.",
       "roller|fixed");
   entries.choice("Interface", matrix.interface,
-                 "Contact of layer and matrix: cemented, or frictionless (may open, no "
-                 "shear).",
-                 "cemented|frictionless");
+                 "Contact of layer and matrix: cemented, sliding (no shear, does not "
+                 "open; buckling driver), or frictionless (no shear, may open; grains).",
+                 "cemented|sliding|frictionless");
   entries.choice("Join", matrix.join, "How grains and mesh meet.", "bridging domain");
   declare_matrix_mesh(matrix, entries);
   entries.number("Tile size ratio", matrix.tile_size,
@@ -78,13 +82,15 @@ void declare(BedsParameters &beds, Declarations &entries)
                   "Thickness of each bed, from below; only their ratios count, together "
                   "they are the layer [-].",
                   Number::above(0.));
-  entries.list("Rocks", beds.rocks,
-               "A rock file (.prm, looked for from the deck) for each bed, from below: its "
-               "moduli, strengths and density. Grain sizes are those of the layer.");
-  entries.choice("Interface", beds.interface,
-                 "Between beds: cemented (by joints with the weaker rock's strengths), or "
-                 "frictional (smooth joints along the bedding).",
-                 "cemented|frictional");
+  entries.list(
+      "Rocks", beds.rocks,
+      "A rock file (.prm, looked for from the deck) for each bed, from below: its "
+      "moduli, strengths and density. Grain sizes are those of the layer.");
+  entries.choice(
+      "Interface", beds.interface,
+      "Between beds: cemented (by joints with the weaker rock's strengths), or "
+      "frictional (smooth joints along the bedding).",
+      "cemented|frictional");
   entries.number("Friction", beds.friction,
                  "mu between frictional beds; 0: they slide freely [-].",
                  Number::at_least(0.));
@@ -206,10 +212,13 @@ void declare(RunParameters &run, Declarations &entries)
   entries.choice(
       "Driver", run.driver,
       "quasi-static (rates do not matter), dynamic (they do), static (implicit "
-      "solves).",
-      "quasi-static|dynamic|static");
-  entries.number("Step safety", run.safety, "Step over the rigorous stable step, that of damped grains and nodes [-].",
-                 Number::above(0.).below(1.));
+      "solves), buckling (loads and shapes at which a straight section of finite "
+      "elements gives way).",
+      "quasi-static|dynamic|static|buckling");
+  entries.number(
+      "Step safety", run.safety,
+      "Step over the rigorous stable step, that of damped grains and nodes [-].",
+      Number::above(0.).below(1.));
   entries.number("End shortening", run.end_shortening,
                  "Shortening (or extension) at which the run ends, whatever the stress "
                  "does; 0: after the peak, as the next three entries say [-].",
@@ -228,6 +237,9 @@ void declare(RunParameters &run, Declarations &entries)
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));
+  entries.whole("Modes", run.modes,
+                "Buckling driver: how many of the lowest loads to find [-].",
+                Number::between(1., 50.));
   entries.leave();
 }
 
@@ -238,8 +250,7 @@ void declare(OutputParameters &output, Declarations &entries)
                 "Lines of history.csv for a shortening of 1e-3 [-].",
                 Number::at_least(1.));
   entries.number("Fields interval", output.fields_interval,
-                 "Shortening between two field files [-].",
-                 Number::at_least(1e-7));
+                 "Shortening between two field files [-].", Number::at_least(1e-7));
   entries.number("Checkpoint interval", output.checkpoint_minutes,
                  "Wall time between two checkpoints [minutes].", Number::above(0.));
   entries.leave();
@@ -260,11 +271,19 @@ void declare_one(const std::string &name,
 
 const std::vector<std::string> &all_components()
 {
-  static const std::vector<std::string> names = {
-      "layer",       "beds",        "matrix",      "foundation",
-      "surface pressure", "gravity", "walls",
-      "servo walls", "membrane", "fractures",   "damping",
-      "measurement circles", "calibration"};
+  static const std::vector<std::string> names = {"layer",
+                                                 "beds",
+                                                 "matrix",
+                                                 "foundation",
+                                                 "surface pressure",
+                                                 "gravity",
+                                                 "walls",
+                                                 "servo walls",
+                                                 "membrane",
+                                                 "fractures",
+                                                 "damping",
+                                                 "measurement circles",
+                                                 "calibration"};
   return names;
 }
 

@@ -86,12 +86,13 @@ struct MatrixParameters
   double burial_depth_ratio = 3.;           ///< H/h: cover above the crest
   double base_depth_ratio = 3.;             ///< matrix below the layer over h
   std::string base = "roller";              ///< roller | fixed | foundation via component
-  std::string interface = "cemented";       ///< cemented | frictionless
+  std::string interface = "cemented";       ///< cemented | sliding | frictionless
   std::string join = "bridging domain";     ///< of grains and mesh: bridging domain
   double mesh_modulus_ratio = 1.; ///< mesh moduli over those of the matrix grains
   // mesh
   double cell_size = 2.;    ///< h_FE over mean grain diameter, near the overlap
   double largest_cell = 6.; ///< rows away from the layer, over mean grain diameter
+  double cell_aspect = 1.;  ///< width of the columns over the size of the cells
   int element_degree = 1;   ///< 1 or 2
   // grains
   double tile_size = 24.; ///< period of the tile over mean grain diameter
@@ -186,7 +187,7 @@ struct DampingParameters
 /// Driver and when the run ends.
 struct RunParameters
 {
-  std::string driver = "quasi-static"; ///< quasi-static | dynamic | static
+  std::string driver = "quasi-static"; ///< quasi-static | dynamic | static | buckling
   double safety = 0.9;                 ///< step over the rigorous stable step
   double end_shortening = 0.;          ///< 0: by the peak
   double strain_multiple_of_peak = 2.; ///< end at this multiple of the strain at the peak
@@ -194,6 +195,10 @@ struct RunParameters
       0.; ///< end when the stress has fallen to this share of it
   double longest_shortening = 0.02; ///< give up here [-]
   int load_steps = 10;              ///< static driver
+  int modes = 4;                    ///< buckling driver
+
+  /// Whether the scene steps in time.
+  bool steps_in_time() const { return driver != "static" && driver != "buckling"; }
 };
 
 struct OutputParameters

@@ -1,3 +1,4 @@
+#include "cases/buckling_run.h"
 #include "cases/program.h"
 
 #include "cases/beds.h"
@@ -405,6 +406,8 @@ int run(const Parameters &parameters,
 
   if (parameters.run.driver == "static")
     return run_static(parameters, options, log, communicator);
+  if (parameters.run.driver == "buckling")
+    return run_buckling(parameters, options, log, communicator);
   SteppedRun stepped(parameters, options, log, communicator);
   try
   {

@@ -87,7 +87,7 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
     sizes.cells = g.n_columns() * rows_of_cells(p, g);
     sizes.dofs = 2. * sizes.cells * p.matrix.element_degree * p.matrix.element_degree;
   }
-  if (p.has("walls") && p.run.driver != "static")
+  if (p.has("walls") && p.run.steps_in_time())
   {
     // Steps in which a wave passes a mean grain, of a packing with this spread of sizes.
     const double steps_per_grain =

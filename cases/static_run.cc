@@ -4,6 +4,7 @@
 #include "cases/prestress.h"
 #include "cases/scene.h"
 #include "cases/small_strain.h"
+#include "cases/solid_run.h"
 #include "cases/summary.h"
 #include "continuum/errors.h"
 #include "continuum/foundation.h"
@@ -24,40 +25,6 @@
 
 namespace antiform::cases
 {
-namespace
-{
-/// Sides follow the walls, the base is held as the deck says.
-continuum::DirichletValues supports(const Scene &scene,
-                                    const continuum::ElasticSolid &solid,
-                                    const double shortening)
-{
-  const Parameters &p = scene.parameters;
-  const double move = 0.5 * shortening * scene.geometry.length();
-  const SectionGeometry &g = scene.geometry;
-  const auto constant = [](const double value)
-  { return [value](const dealii::Point<2> &) { return value; }; };
-  continuum::DirichletValues values;
-  if (!p.has("matrix")) // a bare layer is free to fold: one corner keeps it in place
-  {
-    const double small = 1e-9 * g.length();
-    for (const auto dof : solid.locally_owned())
-      if (const dealii::Point<2> x = solid.support_point(dof);
-          solid.component(dof) == 1 && x[0] < g.x_min() + small &&
-          x[1] < g.layer_bottom(g.x_min()) + small)
-        values[dof] = 0.;
-  }
-  else if (!p.has("foundation"))
-  {
-    continuum::prescribe(solid, continuum::boundary::bottom, 1, constant(0.), values);
-    if (p.matrix.base == "fixed")
-      continuum::prescribe(solid, continuum::boundary::bottom, 0, constant(0.), values);
-  }
-  continuum::prescribe(solid, continuum::boundary::left, 0, constant(move), values);
-  continuum::prescribe(solid, continuum::boundary::right, 0, constant(-move), values);
-  return values;
-}
-} // namespace
-
 int run_static(const Parameters &p,
                const RunOptions &options,
                RunLog &log,
@@ -95,7 +62,7 @@ int run_static(const Parameters &p,
   const double end = p.has("walls") ? p.run.end_shortening : 0.;
   const int n_steps = p.has("walls") ? p.run.load_steps : 1;
   const continuum::StaticSolver::Options solver_options;
-  continuum::StaticSolver solver(solid, solid.stiffness(), supports(*scene, solid, 0.),
+  continuum::StaticSolver solver(solid, solid.stiffness(), section_supports(*scene, 0.),
                                  solver_options);
   continuum::Vector &u = scene->mesh->displacement;
   unsigned int iterations = 0;
@@ -120,7 +87,7 @@ int run_static(const Parameters &p,
     }
     ++step;
     const double shortening = end * step / n_steps;
-    const continuum::DirichletValues values = supports(*scene, solid, shortening);
+    const continuum::DirichletValues values = section_supports(*scene, shortening);
     solver.set_values(values);
     iterations += solver.solve(load, u);
     // Reaction of the left wall: K u - f on its dofs.
@@ -156,26 +123,11 @@ int run_static(const Parameters &p,
     }
   }
 
-  Summary summary;
-  summary.title = p.title;
-  summary.version = ANTIFORM_VERSION;
+  Summary summary = summary_of_solid(*scene, begin);
   summary.status = status;
   summary.warnings = watch.warnings();
   if (!failure.empty())
     summary.warnings.push_back(failure);
-  summary.wall_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const Usage usage = measure_usage(communicator);
-  summary.peak_memory = usage.peak_memory;
-  summary.cpu_seconds = usage.cpu_seconds;
-  summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
-  summary.threads = omp_get_max_threads();
-  summary.sizes = {
-      {"grains", 0},
-      {"joints", 0},
-      {"cells", static_cast<std::int64_t>(scene->triangulation->n_global_active_cells())},
-      {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
-      {"multipliers", 0}};
   summary.steps = summary.solves = step;
   const double height = scene->geometry.surface() - scene->geometry.base();
   summary.results = {{"shortening", {reached, "-"}},
@@ -184,10 +136,7 @@ int run_static(const Parameters &p,
   if (reached > 0.)
     summary.results["section_stiffness"] = {force / reached / height, "Pa"};
   summary.energy = {{"strain_continuum", energy}};
-  for (const Effect &effect : list_effects(p))
-    summary.effects[effect.name] = {effect.state == Effect::State::present &&
-                                        effect.name != "damping",
-                                    effect.reason, effect.name == "mesh" ? step : 0, 0.};
+  summarise_effects(p, step, summary);
   if (first)
     write_summary(options.output + "/summary.json", summary);
   for (const std::string &warning : summary.warnings)

@@ -157,7 +157,7 @@ TEST(Parameters, NamesWhatExistsForWhatDoesNotExistYet)
              "Components=layer, matrix, walls, confinement"});
   EXPECT_TRUE(tells(problems, {"'Layer/Representation'", yet, "grains or continuum"}));
   EXPECT_TRUE(tells(problems, {"'Matrix/Representation'", yet, "continuum or grains"}));
-  EXPECT_TRUE(tells(problems, {"'Matrix/Interface'", yet, "cemented or frictionless"}));
+  EXPECT_TRUE(tells(problems, {"'Matrix/Interface'", yet, "cemented or sliding or frictionless"}));
   EXPECT_TRUE(tells(problems, {"'Matrix/Join'", yet, "bridging domain"}));
   EXPECT_TRUE(tells(problems, {"'confinement'", "does not exist", "surface pressure"}));
 }

@@ -1,0 +1,71 @@
+#include "cases/solid_run.h"
+
+#include "cases/effects.h"
+#include "continuum/section_mesh.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <omp.h>
+
+namespace antiform::cases
+{
+continuum::DirichletValues section_supports(const Scene &scene, const double shortening)
+{
+  const Parameters &p = scene.parameters;
+  const continuum::ElasticSolid &solid = *scene.solid;
+  const SectionGeometry &g = scene.geometry;
+  const double move = 0.5 * shortening * g.length();
+  const auto constant = [](const double value)
+  { return [value](const dealii::Point<2> &) { return value; }; };
+  continuum::DirichletValues values;
+  if (!p.has("matrix")) // a bare layer is free to fold: one corner keeps it in place
+  {
+    const double small = 1e-9 * g.length();
+    for (const auto dof : solid.locally_owned())
+      if (const dealii::Point<2> x = solid.support_point(dof);
+          solid.component(dof) == 1 && x[0] < g.x_min() + small &&
+          x[1] < g.layer_bottom(g.x_min()) + small)
+        values[dof] = 0.;
+  }
+  else if (!p.has("foundation"))
+  {
+    continuum::prescribe(solid, continuum::boundary::bottom, 1, constant(0.), values);
+    if (p.matrix.base == "fixed")
+      continuum::prescribe(solid, continuum::boundary::bottom, 0, constant(0.), values);
+  }
+  continuum::prescribe(solid, continuum::boundary::left, 0, constant(move), values);
+  continuum::prescribe(solid, continuum::boundary::right, 0, constant(-move), values);
+  return values;
+}
+
+Summary summary_of_solid(const Scene &scene,
+                         const std::chrono::steady_clock::time_point begin)
+{
+  const MPI_Comm communicator = scene.communicator();
+  Summary summary;
+  summary.title = scene.parameters.title;
+  summary.version = ANTIFORM_VERSION;
+  summary.wall_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const Usage usage = measure_usage(communicator);
+  summary.peak_memory = usage.peak_memory;
+  summary.cpu_seconds = usage.cpu_seconds;
+  summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
+  summary.threads = omp_get_max_threads();
+  summary.sizes = {
+      {"grains", 0},
+      {"joints", 0},
+      {"cells", static_cast<std::int64_t>(scene.triangulation->n_global_active_cells())},
+      {"dofs", static_cast<std::int64_t>(scene.solid->dof_handler().n_dofs())},
+      {"multipliers", 0}};
+  return summary;
+}
+
+void summarise_effects(const Parameters &p, const std::int64_t solves, Summary &summary)
+{
+  for (const Effect &effect : list_effects(p))
+    summary.effects[effect.name] = {
+        effect.state == Effect::State::present && effect.name != "damping", effect.reason,
+        effect.name == "mesh" ? solves : 0, 0.};
+}
+} // namespace antiform::cases

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "cases/scene.h"
+#include "cases/summary.h"
+#include "continuum/static_solver.h"
+
+#include <chrono>
+#include <cstdint>
+
+namespace antiform::cases
+{
+/// What the runs of a section of finite elements alone share (static, buckling).
+/// Displacements of the supports: sides follow the walls by half of @p shortening [-]
+/// each, the base is held as the deck says.
+continuum::DirichletValues section_supports(const Scene &scene, double shortening);
+
+/// Everything of the summary that does not depend on what was computed; status and
+/// results are the caller's. Collective.
+Summary summary_of_solid(const Scene &scene, std::chrono::steady_clock::time_point begin);
+
+/// The deck's effects, with @p solves calls of the mesh.
+void summarise_effects(const Parameters &parameters,
+                       std::int64_t solves,
+                       Summary &summary);
+} // namespace antiform::cases
