@@ -42,13 +42,16 @@ struct MaterialPoint
   }
 
   /// Strain xx by @p increment while stress yy stays at @p stress_yy, to 1e-12 of
-  /// @p scale, by Newton's method with the law's tangent.
+  /// @p scale: Newton's method with the law's tangent, halving where that leads away (at
+  /// a corner of a yield surface the tangent is 0).
   PointResponse
   move_xx_at_stress_yy(const double increment, const double stress_yy, const double scale)
   {
     input.strain[0] += increment;
+    double &e = input.strain[1];
+    double low = e - 100. * std::abs(increment), high = e + 100. * std::abs(increment);
     std::vector<double> end(history.size());
-    for (int iteration = 0; iteration < 50; ++iteration)
+    for (int iteration = 0; iteration < 100; ++iteration)
     {
       const PointResponse response = law.respond(input, history.data(), end.data());
       const double residual = response.stress.yy - stress_yy;
@@ -57,7 +60,9 @@ struct MaterialPoint
         history = end;
         return response;
       }
-      input.strain[1] -= residual / response.tangent[1][1];
+      (residual > 0. ? high : low) = e;
+      const double next = e - residual / response.tangent[1][1];
+      e = next > low && next < high ? next : 0.5 * (low + high);
     }
     throw std::runtime_error("the strain that holds the lateral stress was not found");
   }
