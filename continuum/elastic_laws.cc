@@ -15,10 +15,10 @@ PointStress sum(const PointStress &a, const PointStress &b)
 }
 
 /// det C - 1 = J^2 - 1 of C = 1 + 2 E, without the cancellation of small strain.
-double area_change(const PlaneVector &E, const char *law)
+double area_change(const PlaneVector &e, const char *law)
 {
-  const double change = 2. * (E[0] + E[1]) + 4. * E[0] * E[1] - E[2] * E[2];
-  if (!(change > -1. && E[0] > -0.5)) // also refuses what is not a number
+  const double change = 2. * (e[0] + e[1]) + 4. * e[0] * e[1] - e[2] * e[2];
+  if (!(change > -1. && e[0] > -0.5)) // also refuses what is not a number
     throw NumericalError(law,
                          "the body is pressed to nothing here: det C = J^2 must stay "
                          "above 0. Load in smaller steps or refine the mesh",
@@ -69,22 +69,23 @@ LinearElastic::respond(const PointInput &input, const double *, double *) const
 
 PointResponse NeoHookean::respond(const PointInput &input, const double *, double *) const
 {
-  const PlaneVector &E = input.strain;
-  const double change = area_change(E, "neo-Hookean law"), det = 1. + change;
-  const double log_J = 0.5 * std::log1p(change);
+  const PlaneVector &e = input.strain;
+  const double change = area_change(e, "neo-Hookean law"), det = 1. + change;
+  const double log_jacobian = 0.5 * std::log1p(change);
   const double lambda = constants_.lambda, mu = constants_.mu;
 
   // C^-1, and 1 - C^-1 without cancellation: (det - C_yy) / det and so on.
-  const PlaneVector inverse{(1. + 2. * E[1]) / det, (1. + 2. * E[0]) / det, -E[2] / det};
-  const PlaneVector rest{(2. * E[0] * (1. + 2. * E[1]) - E[2] * E[2]) / det,
-                         (2. * E[1] * (1. + 2. * E[0]) - E[2] * E[2]) / det, E[2] / det};
-  const PointStress S{mu * rest[0] + lambda * log_J * inverse[0],
-                      mu * rest[1] + lambda * log_J * inverse[1], lambda * log_J,
-                      mu * rest[2] + lambda * log_J * inverse[2]};
+  const PlaneVector inverse{(1. + 2. * e[1]) / det, (1. + 2. * e[0]) / det, -e[2] / det};
+  const PlaneVector rest{(2. * e[0] * (1. + 2. * e[1]) - e[2] * e[2]) / det,
+                         (2. * e[1] * (1. + 2. * e[0]) - e[2] * e[2]) / det, e[2] / det};
+  const PointStress stress{mu * rest[0] + lambda * log_jacobian * inverse[0],
+                           mu * rest[1] + lambda * log_jacobian * inverse[1],
+                           lambda * log_jacobian,
+                           mu * rest[2] + lambda * log_jacobian * inverse[2]};
 
   // lambda C^-1 x C^-1 + (mu - lambda ln J)(C^-1_IK C^-1_JL + C^-1_IL C^-1_JK)
-  PointResponse response{sum(input.initial, S), {}};
-  const double shear = mu - lambda * log_J;
+  PointResponse response{sum(input.initial, stress), {}};
+  const double shear = mu - lambda * log_jacobian;
   const auto at = [&](const int i, const int j) { return inverse[i == j ? i : 2]; };
   constexpr int first[] = {0, 1, 0}, second[] = {0, 1, 1};
   for (int a = 0; a < 3; ++a)
@@ -99,9 +100,9 @@ PointResponse NeoHookean::respond(const PointInput &input, const double *, doubl
 PointResponse
 StVenantKirchhoff::respond(const PointInput &input, const double *, double *) const
 {
-  const PlaneVector &E = input.strain;
-  area_change(E, "St Venant-Kirchhoff law");
-  return {sum(input.initial, constants_.stress({E[0], E[1], 0., E[2]})),
+  const PlaneVector &e = input.strain;
+  area_change(e, "St Venant-Kirchhoff law");
+  return {sum(input.initial, constants_.stress({e[0], e[1], 0., e[2]})),
           constants_.plane_stiffness()};
 }
 } // namespace antiform::continuum

@@ -202,9 +202,9 @@ DruckerPrager::respond(const PointInput &input, const double *begin, double *end
   const double bulk = elastic_.bulk_modulus(), mu = elastic_.mu;
   const double mean = (trial.xx + trial.yy + trial.zz) / 3.;
   const PointStress s{trial.xx - mean, trial.yy - mean, trial.zz - mean, trial.xy};
-  const double root_J2 =
+  const double root_j2 =
       std::sqrt(0.5 * (s.xx * s.xx + s.yy * s.yy + s.zz * s.zz) + s.xy * s.xy);
-  const double yield = 3. * alpha_ * mean + root_J2 - k_;
+  const double yield = 3. * alpha_ * mean + root_j2 - k_;
   if (!std::isfinite(yield))
     throw NumericalError("Drucker-Prager law", "the strain is not a finite number", yield,
                          std::numeric_limits<double>::max());
@@ -216,7 +216,7 @@ DruckerPrager::respond(const PointInput &input, const double *begin, double *end
 
   const double resistance = 9. * bulk * alpha_ * dilation_ + mu;
   const double multiplier = yield / resistance;
-  const double kept = 1. - mu * multiplier / root_J2; // share of s
+  const double kept = 1. - mu * multiplier / root_j2; // share of s
   PointResponse response;
   if (!(kept > 0.))
   {
@@ -228,7 +228,7 @@ DruckerPrager::respond(const PointInput &input, const double *begin, double *end
     const double left = mean - 3. * bulk * dilation_ * multiplier;
     response.stress = {left + kept * s.xx, left + kept * s.yy, left + kept * s.zz,
                        kept * s.xy};
-    response.tangent = cone_tangent(s, root_J2, kept, resistance);
+    response.tangent = cone_tangent(s, root_j2, kept, resistance);
   }
   const PointStress &end_stress = response.stress;
   add_plastic_strain(elastic_,
@@ -239,13 +239,13 @@ DruckerPrager::respond(const PointInput &input, const double *begin, double *end
 }
 
 std::array<PlaneVector, 3> DruckerPrager::cone_tangent(const PointStress &s,
-                                                       const double root_J2,
+                                                       const double root_j2,
                                                        const double kept,
                                                        const double resistance) const
 {
   // Flow and normal through Hooke's law: 3 K alpha 1 + mu s / sqrt(J_2).
   const double bulk = elastic_.bulk_modulus(), mu = elastic_.mu;
-  const PlaneVector n{s.xx / root_J2, s.yy / root_J2, s.xy / root_J2};
+  const PlaneVector n{s.xx / root_j2, s.yy / root_j2, s.xy / root_j2};
   const double normal = bulk + 4. / 3. * mu * kept, cross = bulk - 2. / 3. * mu * kept;
   std::array<PlaneVector, 3> tangent{
       PlaneVector{normal, cross, 0.}, {cross, normal, 0.}, {0., 0., mu * kept}};

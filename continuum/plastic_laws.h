@@ -80,7 +80,7 @@ private:
   /// Tangent of a return to the cone with the trial deviator @p s, of which it keeps the
   /// share @p kept; @p resistance is the fall of f per plastic multiplier [Pa].
   std::array<PlaneVector, 3> cone_tangent(const PointStress &s,
-                                          double root_J2,
+                                          double root_j2,
                                           double kept,
                                           double resistance) const;
 

@@ -83,7 +83,7 @@ PrincipalReturn::PrincipalReturn(const LameConstants &elastic,
     PrincipalStress relief;
     for (int i = 0; i < 3; ++i)
       relief[i] = volumetric + 2. * elastic.mu * flow[i];
-    planes_.push_back({normal, flow, relief, limit});
+    planes_.push_back({normal, relief, limit});
   };
   for (const auto &[i, j] : {std::array{0, 2}, {1, 2}, {0, 1}})
     add(shear_row(i, j, sin_friction), shear_row(i, j, sin_dilation), cohesion_term);

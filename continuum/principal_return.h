@@ -46,10 +46,10 @@ public:
   double yield_function(const PrincipalStress &stress) const;
 
 private:
-  /// normal . stress <= limit; plastic strain along @p flow.
+  /// normal . stress <= limit [Pa].
   struct Plane
   {
-    PrincipalStress normal, flow;
+    PrincipalStress normal;
     PrincipalStress relief; ///< D flow: stress lost per plastic multiplier [Pa]
     double limit;
   };
