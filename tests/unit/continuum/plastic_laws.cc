@@ -108,8 +108,8 @@ TEST(MohrCoulombLaw, TangentIsTheDerivative)
     for (int n = 0; n < 4000; ++n)
     {
       const State state = random_state(dice);
-      // A step of 24 Pa: the round-off of 1e8 Pa is 1e-9 of it, and hardly any state is so
-      // near to the border of a region that the step crosses it.
+      // A step of 24 Pa: the round-off of 1e8 Pa is 1e-9 of it, and hardly any state is
+      // so near to the border of a region that the step crosses it.
       const double error =
           tangent_error(*one.law, state.input, state.history, 1e-9, oedometer);
       worst = std::max(worst, error);
@@ -228,25 +228,33 @@ TEST(PlasticLaws, SwappedAxesSwapTheTangent)
 
 TEST(PlasticLaws, RoundStressInThePlaneHasATangent)
 {
-  // Equal stretches: every direction of the plane is principal. Shear then meets what is
-  // left between both stresses: all of it as long as zz alone yields, none where the
-  // plane's stresses are tied to each other.
+  // Equal or nearly equal stretches: the axes of the stress mean nothing. Shear then
+  // keeps its stiffness where zz alone yields, and has none where the surface ties both
+  // stresses of the plane to each other.
+  struct Round
+  {
+    const char *name;
+    double strain, initial_zz, shear_stiffness;
+  };
   const MohrCoulomb law(rock, {cohesion, friction, 0.2, 0.3 * apex});
   const std::vector<double> still(4, 0.);
   std::vector<double> end(4);
-  PointInput input;
-  input.initial.zz = 5. * cohesion; // zz is cut off, xx = yy are not
-  const PointResponse across = law.respond(input, still.data(), end.data());
-  EXPECT_NEAR(across.stress.zz, 0.3 * apex, 1e-12 * apex);
-  EXPECT_NEAR(across.tangent[2][2], rock.mu, 1e-12 * rock.mu);
-  EXPECT_LT(tangent_error(law, input, still, 1e-9, oedometer), 1e-6);
-
-  input = {};
-  input.strain = {5e-3, 5e-3, 0.}; // xx = yy are cut off
-  const PointResponse along = law.respond(input, still.data(), end.data());
-  EXPECT_NEAR(along.stress.xx, 0.3 * apex, 1e-12 * apex);
-  EXPECT_NEAR(along.tangent[2][2], 0., 1e-12 * rock.mu);
-  EXPECT_LT(tangent_error(law, input, still, 1e-9, oedometer), 1e-6);
+  for (const Round &round : {Round{"zz cut off", 0., 5. * cohesion, rock.mu},
+                             {"all cut off", 5e-3, 0., 0.},
+                             {"xx and yy cut off", 1e-3, -3. * cohesion, 0.},
+                             {"edge, zz the greatest", -5e-3, 5. * cohesion, 0.},
+                             {"edge, zz the least", 1e-4, -20. * cohesion, 0.}})
+    for (const double uneven : {0., 1e-18, 1e-16, 1e-14, 1e-12})
+    {
+      PointInput input;
+      input.strain = {round.strain + uneven, round.strain, 0.3 * uneven};
+      input.initial.zz = round.initial_zz;
+      const PointResponse response = law.respond(input, still.data(), end.data());
+      EXPECT_NE(end, still) << round.name;
+      EXPECT_NEAR(response.tangent[2][2], round.shear_stiffness, 1e-12 * rock.mu)
+          << round.name << ", " << uneven;
+      EXPECT_LT(tangent_error(law, input, still, 1e-9, oedometer), 1e-6) << round.name;
+    }
 }
 
 TEST(PlasticLaws, UnloadingIsElastic)
