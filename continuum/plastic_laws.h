@@ -9,7 +9,8 @@
 /// return mapping and consistent tangent (de Souza Neto, Peric & Owen 2008). Stress is
 /// positive in tension, also in the yield functions; angles are in radians. The stress at
 /// the start is part of the trial stress: where it lies outside of the yield surface the
-/// first answer takes it back. History: plastic strain xx, yy, zz, 2 xy.
+/// first answer takes it back. History: plastic strain xx, yy, zz, 2 xy. Strain that is
+/// not finite throws NumericalError.
 /// Formulas, regions and sources: docs/theory/continuum.md, 12.
 namespace antiform::continuum
 {
