@@ -3,7 +3,7 @@
 #include "continuum/material_law.h"
 
 /// Laws of an isotropic elastic point. With an initial stress S0 each answers S0 + S(E).
-/// Formulas and sources: docs/theory/continuum.md, 12.
+/// Formulas and sources: docs/theory/continuum.md, 13.
 namespace antiform::continuum
 {
 /// Strain with its component across the plane: xx, yy, zz and the engineering shear 2 xy.

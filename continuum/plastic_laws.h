@@ -11,7 +11,7 @@
 /// the start is part of the trial stress: where it lies outside of the yield surface the
 /// first answer takes it back. History: plastic strain xx, yy, zz, 2 xy. Strain that is
 /// not finite throws NumericalError.
-/// Formulas, regions and sources: docs/theory/continuum.md, 12.
+/// Formulas, regions and sources: docs/theory/continuum.md, 13.
 namespace antiform::continuum
 {
 /// Mohr-Coulomb with tension cut-off:

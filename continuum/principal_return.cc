@@ -39,7 +39,7 @@ PrincipalStress shear_row(const int i, const int j, const double sine)
 }
 
 /// Inverse of the leading n by n block by Gauss-Jordan without pivots, which its positive
-/// principal minors allow (docs/theory/continuum.md, 12); the rest stays 0.
+/// principal minors allow (docs/theory/continuum.md, 13); the rest stays 0.
 Matrix inverse(Matrix a, const unsigned int n)
 {
   Matrix result{};
