@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/elastic_solid.h"
+#include "continuum/displacement_space.h"
 
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/trilinos_solver.h>

@@ -25,7 +25,7 @@ constexpr long smallest_threaded_loop = 2000;
 void ElasticSolid::build_rows()
 {
   const Epetra_CrsMatrix &matrix = stiffness_.trilinos_matrix();
-  const int n_nodes = static_cast<int>(partitioner_->locally_owned_size() / 2);
+  const int n_nodes = static_cast<int>(partitioner().locally_owned_size() / 2);
   rows_ = {};
   rows_.start.assign(1, 0);
   std::vector<std::pair<types::global_dof_index, int>> order; // of the x columns
@@ -46,7 +46,7 @@ void ElasticSolid::build_rows()
     for (std::size_t k = 0; k < order.size(); k += 2)
     {
       const int x = order[k].second, y = order[k + 1].second;
-      const unsigned int local = partitioner_->global_to_local(order[k].first);
+      const unsigned int local = partitioner().global_to_local(order[k].first);
       AssertThrow(order[k].first % 2 == 0 && order[k + 1].first == order[k].first + 1 &&
                       local % 2 == 0,
                   ExcInternalError());
@@ -65,7 +65,7 @@ void ElasticSolid::add_to_stiffness(const TrilinosWrappers::SparseMatrix &matrix
 
 void ElasticSolid::add_internal_force(const Vector &displacement, Vector &force) const
 {
-  AssertDimension(displacement.locally_owned_size(), partitioner_->locally_owned_size());
+  AssertDimension(displacement.locally_owned_size(), partitioner().locally_owned_size());
   const double *u = displacement.begin();
   double *f = force.begin();
   const auto n_nodes = static_cast<long>(rows_.start.size()) - 1;
@@ -110,7 +110,7 @@ double ElasticSolid::stable_step(const Vector &inverse_mass) const
     squared_frequency = std::max(squared_frequency,
                                  sums.local_element(i) * inverse_mass.local_element(i));
   squared_frequency =
-      Utilities::MPI::max(squared_frequency, dof_handler_.get_communicator());
+      Utilities::MPI::max(squared_frequency, dof_handler().get_communicator());
   return squared_frequency > 0. ? 2. / std::sqrt(squared_frequency)
                                 : std::numeric_limits<double>::infinity();
 }
@@ -118,7 +118,7 @@ double ElasticSolid::stable_step(const Vector &inverse_mass) const
 double ElasticSolid::strain_energy(const Vector &displacement) const
 {
   return Utilities::MPI::sum(strain_energy_share(displacement),
-                             dof_handler_.get_communicator());
+                             dof_handler().get_communicator());
 }
 
 double ElasticSolid::strain_energy_share(const Vector &displacement) const

@@ -2,10 +2,7 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <cmath>
 #include <limits>
@@ -90,14 +87,9 @@ ElasticSolid::ElasticSolid(const parallel::distributed::Triangulation<2> &triang
                            std::vector<ElasticMaterial> materials,
                            const unsigned int degree,
                            std::function<double(const Point<2> &)> weight)
-    : fe_(FE_Q<2>(degree), 2)
-    , dof_handler_(triangulation)
-    , degree_(degree)
+    : DisplacementSpace(triangulation, degree, std::move(weight))
     , materials_(std::move(materials))
-    , weight_(std::move(weight))
-    , locator_(triangulation)
 {
-  make_dofs();
   assemble_stiffness();
   assemble_mass();
   build_rows();
@@ -112,93 +104,13 @@ const ElasticMaterial &ElasticSolid::material(const types::material_id id) const
   return materials_[id];
 }
 
-void ElasticSolid::make_dofs()
-{
-  dof_handler_.distribute_dofs(fe_);
-  locally_owned_ = dof_handler_.locally_owned_dofs();
-  DoFTools::extract_locally_relevant_dofs(dof_handler_, locally_relevant_);
-  partitioner_ = std::make_shared<Utilities::MPI::Partitioner>(
-      locally_owned_, locally_relevant_, dof_handler_.get_communicator());
-
-  const unsigned int n_local =
-      partitioner_->locally_owned_size() + partitioner_->n_ghost_indices();
-  components_.resize(n_local);
-  support_points_.resize(n_local);
-  FEValues<2> places(fe_, Quadrature<2>(fe_.get_unit_support_points()),
-                     update_quadrature_points);
-  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
-  for (const auto &cell : dof_handler_.active_cell_iterators())
-    if (!cell->is_artificial())
-    {
-      places.reinit(static_cast<Triangulation<2>::cell_iterator>(cell));
-      cell->get_dof_indices(dofs);
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-      {
-        const unsigned int local = partitioner_->global_to_local(dofs[i]);
-        components_[local] = fe_.system_to_component_index(i).first;
-        support_points_[local] = places.quadrature_point(i);
-      }
-    }
-}
-
-unsigned int ElasticSolid::component(const types::global_dof_index dof) const
-{
-  return components_[partitioner_->global_to_local(dof)];
-}
-
-Point<2> ElasticSolid::support_point(const types::global_dof_index dof) const
-{
-  return support_points_[partitioner_->global_to_local(dof)];
-}
-
-PointEvaluation ElasticSolid::shape_values(const Point<2> &point) const
-{
-  const auto place = locator_.find(point);
-  const DoFHandler<2>::active_cell_iterator cell(&dof_handler_.get_triangulation(),
-                                                 place.cell->level(), place.cell->index(),
-                                                 &dof_handler_);
-  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
-  cell->get_dof_indices(dofs);
-  const auto &scalar = fe_.base_element(0);
-  PointEvaluation result;
-  for (unsigned int k = 0; k < scalar.n_dofs_per_cell(); ++k)
-  {
-    result.dof_x.push_back(dofs[fe_.component_to_system_index(0, k)]);
-    result.dof_y.push_back(dofs[fe_.component_to_system_index(1, k)]);
-    result.value.push_back(scalar.shape_value(k, place.unit));
-  }
-  return result;
-}
-
-PointEvaluation ElasticSolid::vertex_values(const Point<2> &point) const
-{
-  const auto place = locator_.find(point);
-  const DoFHandler<2>::active_cell_iterator cell(&dof_handler_.get_triangulation(),
-                                                 place.cell->level(), place.cell->index(),
-                                                 &dof_handler_);
-  PointEvaluation result;
-  for (const unsigned int v : cell->vertex_indices())
-  {
-    result.dof_x.push_back(cell->vertex_dof_index(v, 0));
-    result.dof_y.push_back(cell->vertex_dof_index(v, 1));
-    result.value.push_back(GeometryInfo<2>::d_linear_shape_function(place.unit, v));
-  }
-  return result;
-}
-
 void ElasticSolid::assemble_stiffness()
 {
-  TrilinosWrappers::SparsityPattern pattern(
-      locally_owned_, locally_owned_, locally_relevant_, dof_handler_.get_communicator());
-  DoFTools::make_sparsity_pattern(
-      dof_handler_, pattern, AffineConstraints<double>(), true,
-      dof_handler_.get_triangulation().locally_owned_subdomain());
-  pattern.compress();
-  stiffness_.reinit(pattern);
+  stiffness_.reinit(make_matrix());
 
-  const unsigned int n = fe_.n_dofs_per_cell();
+  const unsigned int n = fe().n_dofs_per_cell();
   std::vector<std::array<double, 3>> strains(n), stresses(n);
-  assemble(dof_handler_, stiffness_,
+  assemble(dof_handler(), stiffness_,
            [&](const auto &cell, const FEValues<2> &values, FullMatrix<double> &K)
            {
              const auto &law = material(cell->material_id());
@@ -207,7 +119,7 @@ void ElasticSolid::assemble_stiffness()
                const double w = weight(values.quadrature_point(q)) * values.JxW(q);
                for (unsigned int i = 0; i < n; ++i)
                {
-                 strains[i] = strain_of(fe_.system_to_component_index(i).first,
+                 strains[i] = strain_of(fe().system_to_component_index(i).first,
                                         values.shape_grad(i, q));
                  stresses[i] = stress_of(law, strains[i]);
                }
@@ -223,8 +135,8 @@ TrilinosMatrix ElasticSolid::geometric_stiffness_of(const Stress &stress) const
 {
   TrilinosMatrix matrix;
   matrix.reinit(stiffness_);
-  const unsigned int n = fe_.n_dofs_per_cell();
-  assemble(dof_handler_, matrix,
+  const unsigned int n = fe().n_dofs_per_cell();
+  assemble(dof_handler(), matrix,
            [&](const auto &cell, const FEValues<2> &values, FullMatrix<double> &K)
            {
              for (const unsigned int q : values.quadrature_point_indices())
@@ -235,8 +147,8 @@ TrilinosMatrix ElasticSolid::geometric_stiffness_of(const Stress &stress) const
                {
                  const Tensor<1, 2> pull = w * (initial * values.shape_grad(i, q));
                  for (unsigned int j = 0; j < n; ++j)
-                   if (fe_.system_to_component_index(i).first ==
-                       fe_.system_to_component_index(j).first)
+                   if (fe().system_to_component_index(i).first ==
+                       fe().system_to_component_index(j).first)
                      K(i, j) += pull * values.shape_grad(j, q);
                }
              }
@@ -253,7 +165,7 @@ ElasticSolid::geometric_stiffness(const SymmetricTensor<2, 2> &initial_stress) c
 
 TrilinosMatrix ElasticSolid::geometric_stiffness(const Vector &displacement) const
 {
-  const unsigned int n = fe_.n_dofs_per_cell();
+  const unsigned int n = fe().n_dofs_per_cell();
   std::vector<types::global_dof_index> dofs(n);
   return geometric_stiffness_of(
       [&](const auto &cell, const FEValues<2> &values, const unsigned int q)
@@ -263,7 +175,7 @@ TrilinosMatrix ElasticSolid::geometric_stiffness(const Vector &displacement) con
         for (unsigned int i = 0; i < n; ++i)
         {
           const auto of_dof =
-              strain_of(fe_.system_to_component_index(i).first, values.shape_grad(i, q));
+              strain_of(fe().system_to_component_index(i).first, values.shape_grad(i, q));
           for (unsigned int k = 0; k < 3; ++k)
             strain[k] += of_dof[k] * displacement(dofs[i]);
         }
@@ -279,10 +191,10 @@ TrilinosMatrix ElasticSolid::geometric_stiffness(const Vector &displacement) con
 void ElasticSolid::assemble_mass()
 {
   lumped_mass_ = make_vector();
-  FEValues<2> values(fe_, QGaussLobatto<2>(degree_ + 1),
+  FEValues<2> values(fe(), QGaussLobatto<2>(degree() + 1),
                      update_values | update_quadrature_points | update_JxW_values);
-  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
-  for (const auto &cell : dof_handler_.active_cell_iterators())
+  std::vector<types::global_dof_index> dofs(fe().n_dofs_per_cell());
+  for (const auto &cell : dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
     {
       values.reinit(cell);
@@ -300,19 +212,14 @@ void ElasticSolid::assemble_mass()
   lumped_mass_.update_ghost_values();
 }
 
-Vector ElasticSolid::make_vector() const
-{
-  return Vector(partitioner_);
-}
-
 std::vector<ElasticSolid::CellState>
 ElasticSolid::cell_states(const Vector &displacement) const
 {
-  FEValues<2> values(fe_, QGauss<2>(degree_ + 1),
+  FEValues<2> values(fe(), QGauss<2>(degree() + 1),
                      update_gradients | update_quadrature_points | update_JxW_values);
-  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
+  std::vector<types::global_dof_index> dofs(fe().n_dofs_per_cell());
   std::vector<CellState> states;
-  for (const auto &cell : dof_handler_.active_cell_iterators())
+  for (const auto &cell : dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
     {
       values.reinit(cell);
@@ -324,7 +231,7 @@ ElasticSolid::cell_states(const Vector &displacement) const
         area += values.JxW(q);
         weighted_area += weight(values.quadrature_point(q)) * values.JxW(q);
         for (unsigned int i = 0; i < dofs.size(); ++i)
-          gradient[fe_.system_to_component_index(i).first] +=
+          gradient[fe().system_to_component_index(i).first] +=
               displacement(dofs[i]) * values.JxW(q) * values.shape_grad(i, q);
       }
       gradient /= area;

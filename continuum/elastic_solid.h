@@ -1,21 +1,15 @@
 #pragma once
 
-#include "continuum/point_locator.h"
+#include "continuum/displacement_space.h"
 
-#include <deal.II/base/index_set.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/types.h>
 #include <deal.II/distributed/tria.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_system.h>
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <array>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,20 +29,9 @@ struct ElasticMaterial
                                    const std::string &name = "");
 };
 
-using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
-
-/// Shape functions at a point: the field there is sum_k value[k] u[dof_x[k]], and with
-/// dof_y its y component.
-struct PointEvaluation
-{
-  std::vector<dealii::types::global_dof_index> dof_x, dof_y;
-  std::vector<double> value; ///< N_k(point) [-]
-};
-
-/// Small-strain elastic body: two displacements a node, Q1 or Q2 cells. Stiffness, mass
-/// and loads carry the weight w_C(x) of the bridging domain where one is given. Runs on
-/// any number of ranks; on one rank a dof's local index is its global one.
-class ElasticSolid
+/// Small-strain elastic body. Stiffness, mass and loads carry the weight w_C(x) of the
+/// bridging domain where one is given.
+class ElasticSolid : public DisplacementSpace
 {
 public:
   /// \param materials indexed by the cells' material id
@@ -58,27 +41,7 @@ public:
                unsigned int degree,
                std::function<double(const dealii::Point<2> &)> weight = {});
 
-  const dealii::DoFHandler<2> &dof_handler() const { return dof_handler_; }
-  unsigned int degree() const { return degree_; }
-  const dealii::FESystem<2> &fe() const { return fe_; }
   const std::vector<ElasticMaterial> &materials() const { return materials_; }
-  /// w_C at a point [-].
-  double weight(const dealii::Point<2> &point) const
-  {
-    return weight_ ? weight_(point) : 1.;
-  }
-  /// x or y (0, 1) of a global dof, and the place of its node.
-  unsigned int component(dealii::types::global_dof_index dof) const;
-  dealii::Point<2> support_point(dealii::types::global_dof_index dof) const;
-
-  /// Shape functions of this mesh at a point; throws std::out_of_range if the point lies
-  /// outside the cells that this rank knows by more than 1e-8 of a cell.
-  PointEvaluation shape_values(const dealii::Point<2> &point) const;
-  /// Bilinear functions of the cell's four vertices at a point, with the dofs of those
-  /// vertices: the multiplier space, also under Q2 cells. Throws as shape_values().
-  PointEvaluation vertex_values(const dealii::Point<2> &point) const;
-  /// Whether the point lies in a cell that this rank knows.
-  bool contains(const dealii::Point<2> &point) const { return locator_.contains(point); }
 
   /// System matrix K = integral w_C B^T C B, without boundary conditions [N/m].
   const dealii::TrilinosWrappers::SparseMatrix &stiffness() const { return stiffness_; }
@@ -91,9 +54,6 @@ public:
   geometric_stiffness(const Vector &displacement) const;
   /// Lumped mass (Gauss-Lobatto points, so positive for Q2 too), weighted: w_C rho [kg].
   const Vector &lumped_mass() const { return lumped_mass_; }
-
-  /// A ghosted vector of this body's dofs, zero.
-  Vector make_vector() const;
 
   /// Add -K u to @p force (owned entries). @p displacement must have its ghosts set. Uses
   /// OpenMP; each row is summed in a fixed order.
@@ -125,9 +85,6 @@ public:
   double strain_energy_share(const Vector &displacement) const;
   double strain_energy(const Vector &displacement) const;
 
-  const dealii::IndexSet &locally_owned() const { return locally_owned_; }
-  const dealii::IndexSet &locally_relevant() const { return locally_relevant_; }
-
 private:
   /// A rank's rows of K in blocks of one node: two rows (x, y) and two columns, since the
   /// two dofs of a node are neighbours. Columns are local node numbers (owned nodes, then
@@ -139,7 +96,6 @@ private:
     std::vector<std::array<double, 4>> block; ///< xx, xy, yx, yy [N/m]
   };
 
-  void make_dofs();
   void assemble_stiffness();
   /// \param stress of (cell, its FEValues, quadrature point)
   template <class Stress>
@@ -147,20 +103,11 @@ private:
   geometric_stiffness_of(const Stress &stress) const;
   void assemble_mass();
   void build_rows();
-  dealii::TrilinosWrappers::SparseMatrix make_matrix() const;
   const ElasticMaterial &material(dealii::types::material_id id) const;
-  dealii::FESystem<2> fe_;
-  dealii::DoFHandler<2> dof_handler_;
-  unsigned int degree_;
+
   std::vector<ElasticMaterial> materials_;
-  std::function<double(const dealii::Point<2> &)> weight_;
-  dealii::IndexSet locally_owned_, locally_relevant_;
   dealii::TrilinosWrappers::SparseMatrix stiffness_;
   Vector lumped_mass_;
-  std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
-  std::vector<unsigned char> components_;        ///< per local dof, ghosts after owned
-  std::vector<dealii::Point<2>> support_points_; ///< per local dof, ghosts after owned
   NodeRows rows_;
-  PointLocator locator_;
 };
 } // namespace antiform::continuum

@@ -11,7 +11,7 @@ namespace antiform::continuum
 using namespace dealii;
 
 TrilinosWrappers::SparseMatrix
-winkler_foundation(const ElasticSolid &solid,
+winkler_foundation(const DisplacementSpace &solid,
                    const std::set<types::boundary_id> &boundaries,
                    const double normal_stiffness)
 {
@@ -19,8 +19,7 @@ winkler_foundation(const ElasticSolid &solid,
     throw std::invalid_argument("foundation: stiffness " +
                                 std::to_string(normal_stiffness) +
                                 " Pa/m would push the body away; give a value >= 0.");
-  TrilinosWrappers::SparseMatrix matrix;
-  matrix.reinit(solid.stiffness());
+  TrilinosWrappers::SparseMatrix matrix = solid.make_matrix();
 
   const auto &fe = solid.fe();
   const unsigned int n = fe.n_dofs_per_cell();

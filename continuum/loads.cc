@@ -18,7 +18,7 @@ Vector finished(Vector force)
 
 /// Sum w_C times @p integrand(cell, values, i, q) of every dof i over the cells.
 template <class Integrand>
-Vector integrate_cells(const ElasticSolid &solid, const Integrand &integrand)
+Vector integrate_cells(const DisplacementSpace &solid, const Integrand &integrand)
 {
   const auto &fe = solid.fe();
   FEValues<2> values(fe, QGauss<2>(fe.degree + 1),
@@ -60,7 +60,7 @@ Vector gravity(const ElasticSolid &solid, const Tensor<1, 2> &acceleration)
       });
 }
 
-Vector body_force(const ElasticSolid &solid,
+Vector body_force(const DisplacementSpace &solid,
                   const std::function<Tensor<1, 2>(const Point<2> &)> &density)
 {
   const auto &fe = solid.fe();
@@ -74,7 +74,7 @@ Vector body_force(const ElasticSolid &solid,
       });
 }
 
-Vector prestress(const ElasticSolid &solid, const StressField &initial_stress)
+Vector prestress(const DisplacementSpace &solid, const StressField &initial_stress)
 {
   const auto &fe = solid.fe();
   return integrate_cells(
@@ -90,12 +90,13 @@ Vector prestress(const ElasticSolid &solid, const StressField &initial_stress)
       });
 }
 
-Vector prestress(const ElasticSolid &solid, const SymmetricTensor<2, 2> &initial_stress)
+Vector prestress(const DisplacementSpace &solid,
+                 const SymmetricTensor<2, 2> &initial_stress)
 {
   return prestress(solid, [&](const Point<2> &) { return initial_stress; });
 }
 
-Vector boundary_traction(const ElasticSolid &solid,
+Vector boundary_traction(const DisplacementSpace &solid,
                          const BoundaryIds &boundaries,
                          const Traction &traction)
 {
@@ -124,8 +125,9 @@ Vector boundary_traction(const ElasticSolid &solid,
   return finished(std::move(force));
 }
 
-Vector
-pressure(const ElasticSolid &solid, const BoundaryIds &boundaries, const double pressure)
+Vector pressure(const DisplacementSpace &solid,
+                const BoundaryIds &boundaries,
+                const double pressure)
 {
   return boundary_traction(solid, boundaries,
                            [&](const Point<2> &, const Tensor<1, 2> &normal)

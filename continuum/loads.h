@@ -21,25 +21,25 @@ Vector gravity(const ElasticSolid &solid, const dealii::Tensor<1, 2> &accelerati
 
 /// integral w_C f(x) N of a force per area of the section [N/m^3].
 Vector
-body_force(const ElasticSolid &solid,
+body_force(const DisplacementSpace &solid,
            const std::function<dealii::Tensor<1, 2>(const dealii::Point<2> &)> &density);
 
 /// integral t(x, n) N over boundaries [Pa]; the normal points out of the reference body.
-Vector boundary_traction(const ElasticSolid &solid,
+Vector boundary_traction(const DisplacementSpace &solid,
                          const BoundaryIds &boundaries,
                          const Traction &traction);
 
 /// Dead normal pressure on the reference faces; positive pushes into the body [Pa].
 Vector
-pressure(const ElasticSolid &solid, const BoundaryIds &boundaries, double pressure);
+pressure(const DisplacementSpace &solid, const BoundaryIds &boundaries, double pressure);
 
 /// - integral w_C B^T S0 of an initial stress (tension positive) [Pa]: the forces with
 /// which a prestressed body pulls on its nodes. Together with boundary_traction() of S0 n
 /// and without a varying weight a divergence-free S0 is in equilibrium to round-off, as
 /// is one that balances gravity() if it is linear in the place (Gauss points integrate
 /// it).
-Vector prestress(const ElasticSolid &solid, const StressField &initial_stress);
+Vector prestress(const DisplacementSpace &solid, const StressField &initial_stress);
 /// The same for a uniform S0.
-Vector prestress(const ElasticSolid &solid,
+Vector prestress(const DisplacementSpace &solid,
                  const dealii::SymmetricTensor<2, 2> &initial_stress);
 } // namespace antiform::continuum

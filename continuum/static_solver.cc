@@ -23,9 +23,25 @@ namespace
 constexpr double largest_rest = 1e-3;
 
 constexpr double unset = std::numeric_limits<double>::lowest();
+
+/// Values of the dofs known here, whichever rank gave them; `unset` for the others.
+Vector spread(const DisplacementSpace &solid, const DirichletValues &values)
+{
+  Vector result = solid.make_vector();
+  const auto &partitioner = *result.get_partitioner();
+  const unsigned int n_owned = partitioner.locally_owned_size();
+  for (unsigned int i = 0; i < n_owned + partitioner.n_ghost_indices(); ++i)
+    result.local_element(i) = unset;
+  for (const auto &[dof, value] : values)
+    if (partitioner.in_local_range(dof) || partitioner.is_ghost_entry(dof))
+      result.local_element(partitioner.global_to_local(dof)) = value;
+  result.compress(VectorOperation::max);
+  result.update_ghost_values();
+  return result;
+}
 } // namespace
 
-void prescribe(const ElasticSolid &solid,
+void prescribe(const DisplacementSpace &solid,
                const types::boundary_id boundary,
                const unsigned int component,
                const std::function<double(const Point<2> &)> &value,
@@ -45,21 +61,34 @@ void prescribe(const ElasticSolid &solid,
         }
 }
 
-StaticSolver::StaticSolver(const ElasticSolid &solid,
+DirichletValues complete(const DisplacementSpace &solid, const DirichletValues &values)
+{
+  const Vector all = spread(solid, values);
+  const auto &partitioner = *all.get_partitioner();
+  DirichletValues result;
+  const unsigned int n_local =
+      partitioner.locally_owned_size() + partitioner.n_ghost_indices();
+  for (unsigned int i = 0; i < n_local; ++i)
+    if (all.local_element(i) != unset)
+      result[partitioner.local_to_global(i)] = all.local_element(i);
+  return result;
+}
+
+StaticSolver::StaticSolver(const DisplacementSpace &solid,
                            const TrilinosWrappers::SparseMatrix &matrix,
                            const DirichletValues &values)
     : StaticSolver(solid, matrix, values, Options())
 {
 }
 
-StaticSolver::StaticSolver(const ElasticSolid &solid,
+StaticSolver::StaticSolver(const DisplacementSpace &solid,
                            const TrilinosWrappers::SparseMatrix &matrix,
                            const DirichletValues &values,
                            const Options &options)
     : solid_(solid)
     , matrix_(matrix)
     , options_(options)
-    , values_(spread(values))
+    , values_(spread(solid, values))
 {
   const unsigned int n_local =
       values_.locally_owned_size() + values_.get_partitioner()->n_ghost_indices();
@@ -88,25 +117,9 @@ StaticSolver::StaticSolver(const ElasticSolid &solid,
   preconditioner_->initialize(reduced_, settings);
 }
 
-/// Values of the dofs known here, whichever rank gave them; `unset` for the others.
-Vector StaticSolver::spread(const DirichletValues &values) const
-{
-  Vector result = solid_.make_vector();
-  const auto &partitioner = *result.get_partitioner();
-  const unsigned int n_owned = partitioner.locally_owned_size();
-  for (unsigned int i = 0; i < n_owned + partitioner.n_ghost_indices(); ++i)
-    result.local_element(i) = unset;
-  for (const auto &[dof, value] : values)
-    if (partitioner.in_local_range(dof) || partitioner.is_ghost_entry(dof))
-      result.local_element(partitioner.global_to_local(dof)) = value;
-  result.compress(VectorOperation::max);
-  result.update_ghost_values();
-  return result;
-}
-
 void StaticSolver::set_values(const DirichletValues &values)
 {
-  Vector fresh = spread(values);
+  Vector fresh = spread(solid_, values);
   unsigned int n_wrong = 0;
   for (unsigned int i = 0; i < prescribed_.size(); ++i)
   {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "continuum/direct_solver.h"
-#include "continuum/elastic_solid.h"
+#include "continuum/displacement_space.h"
 #include "continuum/errors.h"
 
 #include <deal.II/lac/trilinos_precondition.h>
@@ -20,11 +20,15 @@ using DirichletValues = std::map<dealii::types::global_dof_index, double>;
 
 /// Add to @p values the displacement @p value(place) [m] of one component (0: x, 1: y) on
 /// all nodes of the boundary faces with this id, as far as this rank knows them.
-void prescribe(const ElasticSolid &solid,
+void prescribe(const DisplacementSpace &solid,
                dealii::types::boundary_id boundary,
                unsigned int component,
                const std::function<double(const dealii::Point<2> &)> &value,
                DirichletValues &values);
+
+/// The values of all dofs that this rank knows, its own and ghosts, whichever rank gave
+/// them. Collective.
+DirichletValues complete(const DisplacementSpace &solid, const DirichletValues &values);
 
 /// Solves K u = f with prescribed displacements, for a matrix that does not change while
 /// the loads do: preconditioner or factor are made once.
@@ -47,11 +51,11 @@ public:
 
   /// Takes the whole system matrix, with foundation and geometric stiffness; a reference
   /// to it is kept. Collective, as all that follows.
-  StaticSolver(const ElasticSolid &solid,
+  StaticSolver(const DisplacementSpace &solid,
                const dealii::TrilinosWrappers::SparseMatrix &matrix,
                const DirichletValues &values,
                const Options &options);
-  StaticSolver(const ElasticSolid &solid,
+  StaticSolver(const DisplacementSpace &solid,
                const dealii::TrilinosWrappers::SparseMatrix &matrix,
                const DirichletValues &values);
 
@@ -65,12 +69,11 @@ public:
   unsigned int solve(const Vector &force, Vector &displacement) const;
 
 private:
-  Vector spread(const DirichletValues &values) const;
   void eliminate_prescribed();
   unsigned int iterate(const Vector &rhs, Vector &displacement) const;
   void verify(const Vector &rhs, const Vector &displacement) const;
 
-  const ElasticSolid &solid_;
+  const DisplacementSpace &solid_;
   const dealii::TrilinosWrappers::SparseMatrix &matrix_;
   Options options_;
   Vector values_;                         ///< prescribed displacement, 0 elsewhere

@@ -54,7 +54,7 @@ inline void make_distorted_square(Triangulation &triangulation, const unsigned i
 
 /// Values of @p field (by place and component) in all dofs known here.
 inline continuum::Vector
-interpolate(const continuum::ElasticSolid &solid,
+interpolate(const continuum::DisplacementSpace &solid,
             const std::function<double(const Point<2> &, unsigned int)> &field)
 {
   auto vector = solid.make_vector();
@@ -66,7 +66,7 @@ interpolate(const continuum::ElasticSolid &solid,
 
 /// Prescribe @p field on all nodes of the outer boundary.
 inline continuum::DirichletValues
-prescribe_all_sides(const continuum::ElasticSolid &solid,
+prescribe_all_sides(const continuum::DisplacementSpace &solid,
                     const std::function<double(const Point<2> &, unsigned int)> &field)
 {
   continuum::DirichletValues values;
@@ -78,7 +78,7 @@ prescribe_all_sides(const continuum::ElasticSolid &solid,
 }
 
 /// Hold one component of the node at @p place, if this rank knows it.
-inline void hold_node(const continuum::ElasticSolid &solid,
+inline void hold_node(const continuum::DisplacementSpace &solid,
                       const Point<2> &place,
                       const unsigned int component,
                       continuum::DirichletValues &values)
@@ -89,7 +89,7 @@ inline void hold_node(const continuum::ElasticSolid &solid,
       values[dof] = 0.;
 }
 
-inline continuum::Vector solve(const continuum::ElasticSolid &solid,
+inline continuum::Vector solve(const continuum::DisplacementSpace &solid,
                                const dealii::TrilinosWrappers::SparseMatrix &matrix,
                                const continuum::DirichletValues &values,
                                const continuum::Vector &force,
@@ -101,7 +101,7 @@ inline continuum::Vector solve(const continuum::ElasticSolid &solid,
 }
 
 inline continuum::Vector
-solve_direct(const continuum::ElasticSolid &solid,
+solve_direct(const continuum::DisplacementSpace &solid,
              const dealii::TrilinosWrappers::SparseMatrix &matrix,
              const continuum::DirichletValues &values,
              const continuum::Vector &force)

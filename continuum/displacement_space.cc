@@ -1,0 +1,113 @@
+#include "continuum/displacement_space.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+namespace antiform::continuum
+{
+using namespace dealii;
+
+DisplacementSpace::DisplacementSpace(
+    const parallel::distributed::Triangulation<2> &triangulation,
+    const unsigned int degree,
+    std::function<double(const Point<2> &)> weight)
+    : fe_(FE_Q<2>(degree), 2)
+    , dof_handler_(triangulation)
+    , degree_(degree)
+    , weight_(std::move(weight))
+    , locator_(triangulation)
+{
+  make_dofs();
+}
+
+void DisplacementSpace::make_dofs()
+{
+  dof_handler_.distribute_dofs(fe_);
+  locally_owned_ = dof_handler_.locally_owned_dofs();
+  DoFTools::extract_locally_relevant_dofs(dof_handler_, locally_relevant_);
+  partitioner_ = std::make_shared<Utilities::MPI::Partitioner>(
+      locally_owned_, locally_relevant_, dof_handler_.get_communicator());
+
+  const unsigned int n_local =
+      partitioner_->locally_owned_size() + partitioner_->n_ghost_indices();
+  components_.resize(n_local);
+  support_points_.resize(n_local);
+  FEValues<2> places(fe_, Quadrature<2>(fe_.get_unit_support_points()),
+                     update_quadrature_points);
+  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
+  for (const auto &cell : dof_handler_.active_cell_iterators())
+    if (!cell->is_artificial())
+    {
+      places.reinit(static_cast<Triangulation<2>::cell_iterator>(cell));
+      cell->get_dof_indices(dofs);
+      for (unsigned int i = 0; i < dofs.size(); ++i)
+      {
+        const unsigned int local = partitioner_->global_to_local(dofs[i]);
+        components_[local] = fe_.system_to_component_index(i).first;
+        support_points_[local] = places.quadrature_point(i);
+      }
+    }
+}
+
+unsigned int DisplacementSpace::component(const types::global_dof_index dof) const
+{
+  return components_[partitioner_->global_to_local(dof)];
+}
+
+Point<2> DisplacementSpace::support_point(const types::global_dof_index dof) const
+{
+  return support_points_[partitioner_->global_to_local(dof)];
+}
+
+PointEvaluation DisplacementSpace::shape_values(const Point<2> &point) const
+{
+  const auto place = locator_.find(point);
+  const DoFHandler<2>::active_cell_iterator cell(&dof_handler_.get_triangulation(),
+                                                 place.cell->level(), place.cell->index(),
+                                                 &dof_handler_);
+  std::vector<types::global_dof_index> dofs(fe_.n_dofs_per_cell());
+  cell->get_dof_indices(dofs);
+  const auto &scalar = fe_.base_element(0);
+  PointEvaluation result;
+  for (unsigned int k = 0; k < scalar.n_dofs_per_cell(); ++k)
+  {
+    result.dof_x.push_back(dofs[fe_.component_to_system_index(0, k)]);
+    result.dof_y.push_back(dofs[fe_.component_to_system_index(1, k)]);
+    result.value.push_back(scalar.shape_value(k, place.unit));
+  }
+  return result;
+}
+
+PointEvaluation DisplacementSpace::vertex_values(const Point<2> &point) const
+{
+  const auto place = locator_.find(point);
+  const DoFHandler<2>::active_cell_iterator cell(&dof_handler_.get_triangulation(),
+                                                 place.cell->level(), place.cell->index(),
+                                                 &dof_handler_);
+  PointEvaluation result;
+  for (const unsigned int v : cell->vertex_indices())
+  {
+    result.dof_x.push_back(cell->vertex_dof_index(v, 0));
+    result.dof_y.push_back(cell->vertex_dof_index(v, 1));
+    result.value.push_back(GeometryInfo<2>::d_linear_shape_function(place.unit, v));
+  }
+  return result;
+}
+
+TrilinosWrappers::SparseMatrix DisplacementSpace::make_matrix() const
+{
+  TrilinosWrappers::SparsityPattern pattern(
+      locally_owned_, locally_owned_, locally_relevant_, dof_handler_.get_communicator());
+  DoFTools::make_sparsity_pattern(
+      dof_handler_, pattern, AffineConstraints<double>(), true,
+      dof_handler_.get_triangulation().locally_owned_subdomain());
+  pattern.compress();
+  TrilinosWrappers::SparseMatrix matrix;
+  matrix.reinit(pattern);
+  return matrix;
+}
+} // namespace antiform::continuum
