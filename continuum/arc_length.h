@@ -42,7 +42,7 @@ public:
   ArcLength(LoadedSolid &body, const Options &options);
 
   using Measure = std::function<double(const Vector &displacement, double factor)>;
-  /// From an equilibrium at @p displacement (ghosts set) and @p factor follow the path
+  /// From an equilibrium at @p displacement and @p factor follow the path
   /// until @p measure, the same on all ranks, is @p target; both arguments are then those
   /// of that point. Histories are accepted step by step, without time.
   /// Throws NumericalError on all ranks where it cannot go on: steps get too small or too

@@ -17,7 +17,7 @@ namespace
 /// 1991, 9.2).
 constexpr double slack_of_search = 0.8;
 
-/// displacement + share * direction, with ghosts (a copied vector has none).
+/// displacement + share * direction, with ghosts.
 Vector moved(const Vector &displacement, const double share, const Vector &direction)
 {
   Vector result = displacement;
@@ -96,6 +96,7 @@ void NewtonSolver::solve(const double factor,
                          Vector &displacement)
 {
   Convergence convergence(options_.convergence);
+  displacement.update_ghost_values(); // a copied vector has none
   body_.assemble(displacement, factor, time_step, &tangent_);
   convergence.is_reached(body_, tangent_, displacement); // before the prediction
   Vector u = moved(displacement, 1., direction(displacement, factor));

@@ -123,6 +123,7 @@ TEST(NonlinearState, LithostaticStressIsInEquilibrium)
                             });
     LoadedSolid loaded(solid, loads, {});
     auto u = solid.make_vector();
+    u.update_ghost_values();
     loaded.assemble(u, 0., 0., nullptr);
     EXPECT_LT(loaded.residual().l2_norm(), 1e-13 * loaded.force_scale());
     // The base carries the weight.
