@@ -32,7 +32,7 @@ void find_obstacles(const fs::path &directory)
                        ". Move it away, or give another directory with -o DIR.");
   };
   for (const char *name : {"deck.prm", "log.txt", "history.csv", "cracks.csv",
-                           "fields.pvd", "state.h5", "summary.json"})
+                           "modes.csv", "fields.pvd", "state.h5", "summary.json"})
     if (fs::exists(directory / name, error) &&
         !fs::is_regular_file(directory / name, error))
       refuse(name, "is not a file, and the run writes one of that name");
@@ -51,8 +51,8 @@ void prove_writable(const std::string &directory)
   std::string name = directory + "/.antiform-XXXXXX";
   const int file = mkstemp(name.data());
   if (file < 0)
-    throw InputError({"output directory '" + directory +
-                      "': cannot be written to (" + std::strerror(errno) +
+    throw InputError({"output directory '" + directory + "': cannot be written to (" +
+                      std::strerror(errno) +
                       "). Change its permissions, or give another one with -o DIR."});
   close(file);
   unlink(name.c_str());
@@ -81,10 +81,12 @@ OutputDirectory prepare_output_directory(RunOptions &options)
                      "' knows no locks: see that no second run writes there.";
   // deck.prm and a summary alone are of a run that failed before its first step.
   const bool has_state = fs::exists(directory / "state.h5", error);
-  if (!has_state && fs::exists(directory / "history.csv", error))
-    throw InputError({"output directory '" + options.output +
-                      "': holds results (history.csv), but no state.h5 to go on from. "
-                      "Give another directory with -o DIR, or remove this one."});
+  for (const std::string table : {"history.csv", "modes.csv"})
+    if (!has_state && fs::exists(directory / table, error))
+      throw InputError({"output directory '" + options.output + "': holds results (" +
+                        table +
+                        "), but no state.h5 to go on from. Give another directory with "
+                        "-o DIR, or remove this one."});
   if (has_state && !options.resume)
     throw InputError({"output directory '" + options.output +
                       "': holds another run (state.h5). Continue that run with --resume, "
