@@ -48,6 +48,10 @@ public:
   /// Whether the tangent is symmetric whatever the state.
   virtual bool has_symmetric_tangent() const { return true; }
 
+  /// Equivalent plastic strain that a history tells of, sqrt(2/3 e_p : e_p) [-]; 0 of
+  /// laws that do not yield.
+  virtual double plastic_strain(const double * /*history*/) const { return 0.; }
+
   /// \param begin history at the start of the step, n_history() numbers
   /// \param end   history at its end, if the step is accepted; may not alias @p begin
   /// Throws NumericalError where no answer exists (J <= 0, a return that does not

@@ -413,7 +413,7 @@ NonlinearSolid::point_states(const Vector &displacement, const double time_step)
         states.push_back({loop.values.quadrature_point(q), loop.values.JxW(q),
                           loop.material, at.strain,
                           PointStress{push(0, 0), push(1, 1), S.zz / at.J, push(0, 1)},
-                          at.J});
+                          at.J, law.plastic_strain(end.data())});
       },
       nothing);
   return states;

@@ -82,9 +82,10 @@ public:
     dealii::Point<2> place; ///< in the reference body [m]
     double area;            ///< of the reference body [m^2]
     dealii::types::material_id material;
-    PlaneVector strain;  ///< as the law gets it
-    PointStress stress;  ///< Cauchy's, with the initial one [Pa]
-    double volume_ratio; ///< J; 1 at small strain
+    PlaneVector strain;    ///< as the law gets it
+    PointStress stress;    ///< Cauchy's, with the initial one [Pa]
+    double volume_ratio;   ///< J; 1 at small strain
+    double plastic_strain; ///< equivalent [-]
   };
   /// Of the quadrature points in this rank's cells, after a step of @p time_step from the
   /// accepted history. Throws as assemble(); changes nothing.

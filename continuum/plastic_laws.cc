@@ -128,6 +128,13 @@ double shear_left(const bool tied, const double trial_difference, const double l
     return 1.;
   return trial_difference > lost ? 1. - lost / trial_difference : 0.;
 }
+
+/// Of xx, yy, zz, 2 xy.
+double equivalent(const double *const e)
+{
+  return std::sqrt((e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + 0.5 * e[3] * e[3]) * 2. /
+                   3.);
+}
 } // namespace
 
 MohrCoulomb::MohrCoulomb(const LameConstants &elastic,
@@ -259,5 +266,15 @@ std::array<PlaneVector, 3> DruckerPrager::cone_tangent(const PointStress &s,
       tangent[i][j] -= flow * gradient / resistance - mu * (1. - kept) * n[i] * n[j];
     }
   return tangent;
+}
+
+double MohrCoulomb::plastic_strain(const double *const history) const
+{
+  return equivalent(history);
+}
+
+double DruckerPrager::plastic_strain(const double *const history) const
+{
+  return equivalent(history);
 }
 } // namespace antiform::continuum

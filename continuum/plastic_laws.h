@@ -32,6 +32,7 @@ public:
   MohrCoulomb(const LameConstants &elastic, const MohrCoulombParameters &parameters);
 
   unsigned int n_history() const override { return 4; }
+  double plastic_strain(const double *history) const override;
   bool has_symmetric_tangent() const override { return associated_; }
   PointResponse
   respond(const PointInput &input, const double *begin, double *end) const override;
@@ -73,6 +74,7 @@ public:
   double shear_strength() const { return k_; }        ///< k, sqrt(J_2) at I_1 = 0 [Pa]
 
   unsigned int n_history() const override { return 4; }
+  double plastic_strain(const double *history) const override;
   bool has_symmetric_tangent() const override { return alpha_ == dilation_; }
   PointResponse
   respond(const PointInput &input, const double *begin, double *end) const override;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "continuum/elastic_solid.h"
+#include "continuum/nonlinear_solid.h"
 
 #include <string>
 
@@ -12,5 +13,10 @@ namespace antiform::coupling
 /// written.
 void write_mesh_vtu(const std::string &path,
                     const continuum::ElasticSolid &solid,
+                    const continuum::Vector &displacement);
+/// The same of a body of laws: means over the cells of Cauchy's stress (the initial one
+/// included), the laws' strain and the equivalent plastic strain.
+void write_mesh_vtu(const std::string &path,
+                    const continuum::NonlinearSolid &solid,
                     const continuum::Vector &displacement);
 } // namespace antiform::coupling
