@@ -1,6 +1,8 @@
 #include "cases/buckling_run.h"
 
+#include "cases/interrupt.h"
 #include "cases/mechanism.h"
+#include "cases/mesh_strips.h"
 #include "cases/scene.h"
 #include "cases/solid_run.h"
 #include "continuum/foundation.h"
@@ -21,14 +23,12 @@ namespace antiform::cases
 {
 namespace
 {
-constexpr unsigned int layer_material = 1; // as mesh_strips() numbers them
-
 /// Mean compression along the layer [Pa], tension negative.
 double layer_stress(const Scene &scene, const continuum::Vector &displacement)
 {
   double force = 0., area = 0.;
   for (const auto &cell : scene.solid->cell_states(displacement))
-    if (cell.material == layer_material)
+    if (cell.material == layer_material_id)
     {
       force -= cell.stress[0] * cell.area;
       area += cell.area;
@@ -46,7 +46,7 @@ unsigned int half_waves(const Scene &scene, const continuum::Vector &shape)
   std::vector<double> across(g.n_columns());
   std::vector<dealii::types::global_dof_index> dofs(solid.fe().n_dofs_per_cell());
   for (const auto &cell : solid.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned() && cell->material_id() == layer_material)
+    if (cell->is_locally_owned() && cell->material_id() == layer_material_id)
     {
       const double column =
           std::floor((cell->center()[0] - g.x_min()) / g.length() * g.n_columns());
@@ -81,13 +81,13 @@ struct Mode
   unsigned int half_waves; ///< along the section
 };
 
-/// Wavelength of the least load in a section without end: minimum of the parabola through
-/// the lowest mode and its two neighbours in number of half waves; the lowest mode's own
-/// where these are not among the modes [m].
+/// Wavelength of the least load in a section without end: minimum of a m^2 + b + c / m (a
+/// beam on a matrix) through the lowest mode and its two neighbours in number of half
+/// waves; the lowest mode's own where these are not among the modes [m].
 double dominant_wavelength(const std::vector<Mode> &modes, const double length)
 {
   const Mode &lowest = modes.front();
-  double m = lowest.half_waves;
+  const double n = lowest.half_waves;
   const Mode *below = nullptr, *above = nullptr;
   for (const Mode &mode : modes)
   {
@@ -96,12 +96,51 @@ double dominant_wavelength(const std::vector<Mode> &modes, const double length)
     if (mode.half_waves == lowest.half_waves + 1 && above == nullptr)
       above = &mode;
   }
-  if (below != nullptr && above != nullptr)
+  if (n == 0.)
+    return 0.;
+  if (n < 2. || below == nullptr || above == nullptr)
+    return 2. * length / n;
+  // Slopes between the three: a (m1 + m2) - c / (m1 m2).
+  const double left = lowest.stress - below->stress,
+               right = above->stress - lowest.stress;
+  const double a = (right * (n + 1.) - left * (n - 1.)) /
+                   ((2. * n + 1.) * (n + 1.) - (2. * n - 1.) * (n - 1.));
+  const double c = (a * (2. * n - 1.) - left) * n * (n - 1.);
+  return 2. * length / std::cbrt(c / (2. * a));
+}
+
+/// What a reader should know before he believes the figures.
+std::vector<std::string>
+doubts(const Scene &scene, const std::vector<Mode> &modes, const int wanted)
+{
+  std::vector<std::string> texts;
+  char text[240];
+  const Mode &lowest = modes.front();
+  const double columns = scene.geometry.n_columns();
+  if (lowest.half_waves == 0 || columns < 6. * lowest.half_waves)
   {
-    const double a = below->stress, b = lowest.stress, c = above->stress;
-    m += 0.5 * (a - c) / (a - 2. * b + c);
+    std::snprintf(text, sizeof text,
+                  "%.3g columns of cells a half wave: too few for a load to trust. Give "
+                  "'Matrix/Cell aspect ratio' less, for 8 or more",
+                  lowest.half_waves == 0 ? columns : columns / lowest.half_waves);
+    texts.push_back(text);
   }
-  return m > 0. ? 2. * length / m : 0.;
+  if (lowest.half_waves < 3 && scene.parameters.has("matrix"))
+    texts.push_back("the section holds " + std::to_string(lowest.half_waves) +
+                    " half waves only: its length decides how long they are. Give "
+                    "'Layer/Length ratio' more");
+  if (lowest.shortening > 0.02)
+  {
+    std::snprintf(text, sizeof text,
+                  "buckling at a shortening of %.2g: the linear theory, of small strain "
+                  "before it, is off by as much and more",
+                  lowest.shortening);
+    texts.push_back(text);
+  }
+  if (static_cast<int>(modes.size()) < wanted)
+    texts.push_back(std::to_string(modes.size()) + " of " + std::to_string(wanted) +
+                    " modes found");
+  return texts;
 }
 
 /// The closed form for the same scene, if it has one.
@@ -156,6 +195,15 @@ int run_buckling(const Parameters &p,
                  const MPI_Comm communicator)
 {
   const auto begin = std::chrono::steady_clock::now();
+  catch_interrupts();
+  const auto stop = [&]
+  {
+    const double elapsed =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const bool mine = interrupt_signal() != 0 ||
+                      (options.time_limit > 0. && elapsed > options.time_limit);
+    return dealii::Utilities::MPI::max(mine ? 1 : 0, communicator) != 0;
+  };
   const std::unique_ptr<Scene> scene =
       build(p, communicator, [&](const std::string &what) { log.line("  " + what); });
   continuum::ElasticSolid &solid = *scene->solid;
@@ -171,14 +219,28 @@ int run_buckling(const Parameters &p,
       p.has("matrix") && p.matrix.interface == "sliding"
           ? continuum::sliding_interfaces(solid)
           : std::vector<continuum::Tie>();
-  const continuum::DofReduction reduction(solid, section_supports(*scene, shortening),
-                                          ties);
+  const continuum::DofReduction reduction(
+      solid, section_supports(p, scene->geometry, solid, shortening), ties);
   const continuum::Vector straight =
       continuum::solve_reduced(solid, reduction, solid.make_vector());
   const double stress = layer_stress(*scene, straight);
-  const auto shapes = continuum::lowest_buckling_modes(
-      solid, solid.geometric_stiffness(straight), reduction,
-      {static_cast<unsigned int>(p.run.modes), 1e-9, 200});
+  std::vector<continuum::BucklingMode> shapes;
+  try
+  {
+    shapes = continuum::lowest_buckling_modes(
+        solid, solid.geometric_stiffness(straight), reduction,
+        {static_cast<unsigned int>(p.run.modes), 1e-9, 200, stop});
+  }
+  catch (const continuum::BucklingStopped &)
+  {
+    Summary summary = summary_of_solid(p, solid, begin);
+    summary.status = "interrupted";
+    summarise_effects(p, 1, summary);
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      write_summary(options.output + "/summary.json", summary);
+    log.line("interrupted: a buckling run keeps no checkpoint, run it again");
+    return 3;
+  }
   std::vector<Mode> modes;
   for (const continuum::BucklingMode &shape : shapes)
     modes.push_back({shape.load_factor * shortening, shape.load_factor * stress,
@@ -187,7 +249,7 @@ int run_buckling(const Parameters &p,
 
   const Mode &lowest = modes.front();
   const double wavelength = dominant_wavelength(modes, scene->geometry.length());
-  Summary summary = summary_of_solid(*scene, begin);
+  Summary summary = summary_of_solid(p, solid, begin);
   summary.status = "completed";
   summary.steps = 0;
   summary.solves = 2; // straight section, and one factor for all modes
@@ -204,6 +266,7 @@ int run_buckling(const Parameters &p,
                percent(lowest.stress / theory->stress) + ", wavelength " +
                percent(wavelength / theory->wavelength) + ")";
   }
+  summary.warnings = doubts(*scene, modes, p.run.modes);
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     write_summary(options.output + "/summary.json", summary);
@@ -215,6 +278,8 @@ int run_buckling(const Parameters &p,
                   k + 1, modes[k].shortening, modes[k].stress, modes[k].half_waves);
     log.line(row);
   }
+  for (const std::string &warning : summary.warnings)
+    log.line("warning: " + warning);
   char text[128];
   std::snprintf(text, sizeof text,
                 "completed: the layer buckles at %.4g Pa, wavelength %.4g m",

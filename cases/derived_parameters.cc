@@ -82,14 +82,14 @@ double mean_of_beds(const Parameters &p, double (*quantity)(const LayerParameter
 
 double Parameters::young_modulus() const
 {
-  return mean_of_beds(*this, [](const LayerParameters &rock) { return rock.young_modulus; });
+  return mean_of_beds(*this,
+                      [](const LayerParameters &rock) { return rock.young_modulus; });
 }
 
 double Parameters::plane_modulus() const
 {
   return mean_of_beds(
-      *this,
-      [](const LayerParameters &rock)
+      *this, [](const LayerParameters &rock)
       { return rock.young_modulus / (1. - rock.poisson_ratio * rock.poisson_ratio); });
 }
 
@@ -127,6 +127,19 @@ bool Parameters::is_specimen() const
 {
   return has("layer") && !has("matrix") && layer.representation == "grains" &&
          layer.shape == "straight";
+}
+
+MaterialParameters::MaterialParameters()
+    : tan_friction(tangent_of_degrees(42.))
+{
+}
+
+bool Parameters::is_nonlinear() const
+{
+  return run.driver == "static" &&
+         (run.strain == "finite" ||
+          (has_layer_mesh() && layer_material.law != "elastic") ||
+          (has_matrix_mesh() && matrix_material.law != "elastic"));
 }
 
 bool Parameters::is_bridged() const

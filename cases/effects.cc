@@ -37,9 +37,8 @@ std::vector<Effect> list_effects(const Parameters &p)
   const bool breakable = grains && (layer_breaks || (matrix && p.matrix.breakable));
   const bool slips = grains && matrix && p.matrix.interface == "frictionless";
   const bool beside = grains && discrete::has_contact_beside(p.layer.law());
-  const bool flat =
-      (grains && p.layer.bond_model == "flat joint" && layer_breaks) ||
-      (grains && matrix && p.matrix.breakable);
+  const bool flat = (grains && p.layer.bond_model == "flat joint" && layer_breaks) ||
+                    (grains && matrix && p.matrix.breakable);
 
   const std::string unbonded = "joints of the layer begin without bonds";
   const auto at_breakage = [&](const std::string &name, const std::string &what)
@@ -104,6 +103,20 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
                         "gravity or surface pressure: the section was laid down under it",
                         "neither gravity nor surface pressure"));
+  list.push_back(choose("finite strain", p.is_nonlinear() && p.run.strain == "finite",
+                        "'Run / Strain' is finite",
+                        mesh ? "'Run / Strain' is small" : "nothing is finite elements"));
+  const auto any = [&](const auto &is)
+  {
+    return (p.has_layer_mesh() && is(p.layer_material)) ||
+           (p.has_matrix_mesh() && is(p.matrix_material));
+  };
+  list.push_back(choose("yielding", any([](const auto &m) { return m.yields(); }),
+                        "finite elements of a plastic law",
+                        "no finite elements have a plastic law"));
+  list.push_back(choose("creep", any([](const auto &m) { return m.law == "Maxwell"; }),
+                        "finite elements of a viscous law",
+                        "no finite elements have a viscous law"));
   const bool steps = p.run.steps_in_time();
   const std::string no_steps = "the " + p.run.driver + " driver takes no steps in time";
   list.push_back(choose("motion of the grains", grains && steps,

@@ -31,7 +31,8 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
   {
     const int rows =
         std::max(2, static_cast<int>(std::lround(geometry.thickness() / cell)));
-    continuum::Strip layer{core_bottom, core_top, {}, 1, geometry.has_matrix() && joined};
+    continuum::Strip layer{
+        core_bottom, core_top, {}, layer_material_id, geometry.has_matrix() && joined};
     for (int r = 0; r <= rows; ++r)
       layer.rows.push_back(static_cast<double>(r) / rows);
     strips.push_back(layer);
@@ -41,8 +42,18 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
     const double height = geometry.surface() - geometry.core_top(0.);
     strips.push_back({core_top, surface,
                       continuum::graded_rows(height, cell, uniform, 1.3, largest, false),
-                      0, layer_is_mesh && joined});
+                      matrix_material_id, layer_is_mesh && joined});
   }
   return strips;
+}
+
+std::unique_ptr<dealii::parallel::distributed::Triangulation<2>> make_mesh(
+    const Parameters &p, const SectionGeometry &geometry, const MPI_Comm communicator)
+{
+  auto mesh =
+      std::make_unique<dealii::parallel::distributed::Triangulation<2>>(communicator);
+  continuum::make_section(*mesh, geometry.x_min(), geometry.x_max(), geometry.n_columns(),
+                          mesh_strips(p, geometry));
+  return mesh;
 }
 } // namespace antiform::cases

@@ -75,6 +75,39 @@ void declare(MatrixParameters &matrix, Declarations &entries)
   entries.leave();
 }
 
+void declare(const std::string &section,
+             MaterialParameters &material,
+             Declarations &entries)
+{
+  entries.enter(section);
+  entries.choice("Law", material.law,
+                 "elastic (Hooke; neo-Hookean at finite strain), St Venant-Kirchhoff "
+                 "(finite strain; soft under strong compression), Mohr-Coulomb and "
+                 "Drucker-Prager (elastic, perfectly plastic), Maxwell (viscous in "
+                 "shear). At finite strain the last three are for large rotation and "
+                 "strains of some percents. Other than elastic: static driver.",
+                 "elastic|St Venant-Kirchhoff|Mohr-Coulomb|Drucker-Prager|Maxwell");
+  entries.number(
+      "Cohesion", material.cohesion,
+      "c of Mohr-Coulomb and Drucker-Prager, 2 c cos phi / (1 - sin phi) being "
+      "the UCS [Pa].",
+      Number::at_least(0.));
+  entries.angle("Friction angle", material.tan_friction, "phi [degrees].");
+  entries.angle("Dilation angle", material.tan_dilation,
+                "psi, up to phi; with psi = phi flow is associated [degrees].");
+  entries.number("Tensile strength", material.tensile_strength,
+                 "Cut-off of Mohr-Coulomb, up to c cot phi; 0: none [Pa].",
+                 Number::at_least(0.));
+  entries.choice("Match", material.match,
+                 "Where the cone of Drucker-Prager meets Mohr-Coulomb: plane strain (of "
+                 "equal collapse with psi = phi, or psi = 0), outer (triaxial "
+                 "compression), inner (extension).",
+                 "plane strain|outer|inner");
+  entries.number("Viscosity", material.viscosity, "eta of Maxwell in shear [Pa s].",
+                 Number::above(0.));
+  entries.leave();
+}
+
 void declare(BedsParameters &beds, Declarations &entries)
 {
   entries.enter("Beds");
@@ -237,9 +270,15 @@ void declare(RunParameters &run, Declarations &entries)
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));
+  entries.choice("Strain", run.strain,
+                 "Static driver: small strain and rotation, or finite.", "small|finite");
+  entries.number("Duration", run.duration,
+                 "Static driver: time in which the section is shortened, for viscous "
+                 "materials [s].",
+                 Number::at_least(0.));
   entries.whole("Modes", run.modes,
                 "Buckling driver: how many of the lowest loads to find [-].",
-                Number::between(1., 50.));
+                Number::between(1., 20.));
   entries.leave();
 }
 
@@ -293,6 +332,8 @@ const std::vector<Section> &all_sections()
       {"Layer", "component layer"},
       {"Beds", "component beds"},
       {"Matrix", "component matrix"},
+      {"Layer material", "the layer is continuum"},
+      {"Matrix material", "component matrix, which is continuum"},
       {"Bridging domain", "the layer is grains and the matrix is continuum"},
       {"Foundation", "component foundation"},
       {"Surface pressure", "component surface pressure"},
@@ -315,6 +356,10 @@ bool is_read(const std::string &section, const Parameters &p)
     return true;
   if (section == "Bridging domain")
     return p.is_bridged();
+  if (section == "Layer material")
+    return p.has_layer_mesh();
+  if (section == "Matrix material")
+    return p.has_matrix_mesh();
   std::string component = section;
   component[0] = static_cast<char>(component[0] - 'A' + 'a');
   return p.has(component);
@@ -339,6 +384,10 @@ void declare_parameters(Parameters &p,
       declare(p.beds, entries);
     else if (section == "Matrix")
       declare(p.matrix, entries);
+    else if (section == "Layer material")
+      declare(section, p.layer_material, entries);
+    else if (section == "Matrix material")
+      declare(section, p.matrix_material, entries);
     else if (section == "Bridging domain")
       declare(p.bridging, entries);
     else if (section == "Foundation")

@@ -101,6 +101,23 @@ struct MatrixParameters
   double tan_friction = 0., residual_friction = 0.;
 };
 
+/// How finite elements of the layer or of the matrix answer to strain.
+struct MaterialParameters
+{
+  MaterialParameters(); ///< friction angle: 42 degrees to the last bit
+
+  std::string law = "elastic";  ///< St Venant-Kirchhoff | Mohr-Coulomb | Drucker-Prager |
+                                ///< Maxwell
+  double cohesion = 36.3e6;     ///< c [Pa]
+  double tan_friction;          ///< of phi [-]
+  double tan_dilation = 0.;     ///< of psi [-]
+  double tensile_strength = 0.; ///< cut-off; 0: none, up to the apex [Pa]
+  std::string match = "plane strain"; ///< of the cone: plane strain | outer | inner
+  double viscosity = 1e20;            ///< eta of shear [Pa s]
+
+  bool yields() const { return law == "Mohr-Coulomb" || law == "Drucker-Prager"; }
+};
+
 struct BridgingParameters
 {
   double overlap = 4.; ///< w over mean grain diameter
@@ -157,8 +174,8 @@ struct FracturesParameters
   std::string list;  ///< "x1 y1 x2 y2; ..." [m]
   std::string table; ///< of fractures (.csv); empty: none
   // A drawn network: a number for each set, or one for all
-  std::vector<double> intensity;                   ///< P21 [1/m]
-  std::vector<double> orientation = {60.};         ///< [degrees]
+  std::vector<double> intensity;           ///< P21 [1/m]
+  std::vector<double> orientation = {60.}; ///< [degrees]
   std::vector<double> orientation_deviation = {5.};
   std::string length_law = "constant"; ///< exponential, lognormal, power law
   std::vector<double> mean_length = {10.}, length_deviation = {2.}; ///< [m]
@@ -196,6 +213,8 @@ struct RunParameters
   double longest_shortening = 0.02; ///< give up here [-]
   int load_steps = 10;              ///< static driver
   int modes = 4;                    ///< buckling driver
+  std::string strain = "small";     ///< small | finite; static driver
+  double duration = 0.;             ///< of the shortening, for laws with time [s]
 
   /// Whether the scene steps in time.
   bool steps_in_time() const { return driver != "static" && driver != "buckling"; }
@@ -246,6 +265,7 @@ struct Parameters
   LayerParameters layer;
   BedsParameters beds;
   MatrixParameters matrix;
+  MaterialParameters layer_material, matrix_material;
   BridgingParameters bridging;
   FoundationParameters foundation;
   SurfacePressureParameters surface_pressure;
@@ -282,6 +302,17 @@ struct Parameters
   const ConfinementParameters *confinement() const;
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
+  /// The parts of the section that are finite elements alone.
+  bool has_layer_mesh() const
+  {
+    return has("layer") && layer.representation == "continuum";
+  }
+  bool has_matrix_mesh() const
+  {
+    return has("matrix") && matrix.representation == "continuum";
+  }
+  /// The static driver has more to solve than a linear elastic body: a law, large strain.
+  bool is_nonlinear() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
   bool is_bridged() const;
 

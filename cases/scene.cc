@@ -57,11 +57,7 @@ continuum::ElasticMaterial matrix_material(const Parameters &p,
 void build_mesh(Scene &scene, const MPI_Comm communicator)
 {
   const Parameters &p = scene.parameters;
-  scene.triangulation =
-      std::make_unique<dealii::parallel::distributed::Triangulation<2>>(communicator);
-  continuum::make_section(*scene.triangulation, scene.geometry.x_min(),
-                          scene.geometry.x_max(), scene.geometry.n_columns(),
-                          mesh_strips(p, scene.geometry));
+  scene.triangulation = make_mesh(p, scene.geometry, communicator);
   const GrainSection *const grains = scene.grains ? &*scene.grains : nullptr;
   std::vector<continuum::ElasticMaterial> materials{matrix_material(p, grains)};
   materials.push_back(

@@ -9,11 +9,11 @@
 
 namespace antiform::cases
 {
-continuum::DirichletValues section_supports(const Scene &scene, const double shortening)
+continuum::DirichletValues section_supports(const Parameters &p,
+                                            const SectionGeometry &g,
+                                            const continuum::DisplacementSpace &solid,
+                                            const double shortening)
 {
-  const Parameters &p = scene.parameters;
-  const continuum::ElasticSolid &solid = *scene.solid;
-  const SectionGeometry &g = scene.geometry;
   const double move = 0.5 * shortening * g.length();
   const auto constant = [](const double value)
   { return [value](const dealii::Point<2> &) { return value; }; };
@@ -38,12 +38,13 @@ continuum::DirichletValues section_supports(const Scene &scene, const double sho
   return values;
 }
 
-Summary summary_of_solid(const Scene &scene,
+Summary summary_of_solid(const Parameters &p,
+                         const continuum::DisplacementSpace &solid,
                          const std::chrono::steady_clock::time_point begin)
 {
-  const MPI_Comm communicator = scene.communicator();
+  const MPI_Comm communicator = solid.dof_handler().get_communicator();
   Summary summary;
-  summary.title = scene.parameters.title;
+  summary.title = p.title;
   summary.version = ANTIFORM_VERSION;
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -55,8 +56,9 @@ Summary summary_of_solid(const Scene &scene,
   summary.sizes = {
       {"grains", 0},
       {"joints", 0},
-      {"cells", static_cast<std::int64_t>(scene.triangulation->n_global_active_cells())},
-      {"dofs", static_cast<std::int64_t>(scene.solid->dof_handler().n_dofs())},
+      {"cells", static_cast<std::int64_t>(
+                    solid.dof_handler().get_triangulation().n_global_active_cells())},
+      {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
       {"multipliers", 0}};
   return summary;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "cases/scene.h"
+#include "cases/geometry.h"
+#include "cases/parameters.h"
 #include "cases/summary.h"
 #include "continuum/static_solver.h"
 
@@ -12,11 +13,16 @@ namespace antiform::cases
 /// What the runs of a section of finite elements alone share (static, buckling).
 /// Displacements of the supports: sides follow the walls by half of @p shortening [-]
 /// each, the base is held as the deck says.
-continuum::DirichletValues section_supports(const Scene &scene, double shortening);
+continuum::DirichletValues section_supports(const Parameters &parameters,
+                                            const SectionGeometry &geometry,
+                                            const continuum::DisplacementSpace &solid,
+                                            double shortening);
 
 /// Everything of the summary that does not depend on what was computed; status and
 /// results are the caller's. Collective.
-Summary summary_of_solid(const Scene &scene, std::chrono::steady_clock::time_point begin);
+Summary summary_of_solid(const Parameters &parameters,
+                         const continuum::DisplacementSpace &solid,
+                         std::chrono::steady_clock::time_point begin);
 
 /// The deck's effects, with @p solves calls of the mesh.
 void summarise_effects(const Parameters &parameters,

@@ -1,6 +1,7 @@
 #include "cases/static_run.h"
 
 #include "cases/interrupt.h"
+#include "cases/nonlinear_run.h"
 #include "cases/prestress.h"
 #include "cases/scene.h"
 #include "cases/small_strain.h"
@@ -30,6 +31,8 @@ int run_static(const Parameters &p,
                RunLog &log,
                const MPI_Comm communicator)
 {
+  if (p.is_nonlinear())
+    return run_nonlinear(p, options, log, communicator);
   const auto begin = std::chrono::steady_clock::now();
   const std::unique_ptr<Scene> scene =
       build(p, communicator, [&](const std::string &what) { log.line("  " + what); });
@@ -62,7 +65,8 @@ int run_static(const Parameters &p,
   const double end = p.has("walls") ? p.run.end_shortening : 0.;
   const int n_steps = p.has("walls") ? p.run.load_steps : 1;
   const continuum::StaticSolver::Options solver_options;
-  continuum::StaticSolver solver(solid, solid.stiffness(), section_supports(*scene, 0.),
+  continuum::StaticSolver solver(solid, solid.stiffness(),
+                                 section_supports(p, scene->geometry, solid, 0.),
                                  solver_options);
   continuum::Vector &u = scene->mesh->displacement;
   unsigned int iterations = 0;
@@ -87,7 +91,8 @@ int run_static(const Parameters &p,
     }
     ++step;
     const double shortening = end * step / n_steps;
-    const continuum::DirichletValues values = section_supports(*scene, shortening);
+    const continuum::DirichletValues values =
+        section_supports(p, scene->geometry, solid, shortening);
     solver.set_values(values);
     iterations += solver.solve(load, u);
     // Reaction of the left wall: K u - f on its dofs.
@@ -123,7 +128,7 @@ int run_static(const Parameters &p,
     }
   }
 
-  Summary summary = summary_of_solid(*scene, begin);
+  Summary summary = summary_of_solid(p, solid, begin);
   summary.status = status;
   summary.warnings = watch.warnings();
   if (!failure.empty())
