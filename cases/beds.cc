@@ -21,14 +21,13 @@ BedPlanes::BedPlanes(const Parameters &p, const SectionGeometry &geometry)
   // covered by pairs of its own.
   const double q = 2. * M_PI / geometry.wavelength(), d = geometry.diameter();
   const double curvature = 0.5 * geometry.amplitude() * q * q;
-  const double chord =
-      curvature > 0. ? std::max(4. * d, std::sqrt(8. * 0.02 * d / curvature))
-                     : geometry.length();
+  const double chord = curvature > 0.
+                           ? std::max(4. * d, std::sqrt(8. * 0.02 * d / curvature))
+                           : geometry.length();
   const auto n = static_cast<std::size_t>(std::ceil(geometry.length() / chord));
   chord_ = geometry.length() / static_cast<double>(n);
   for (std::size_t k = 0; k <= n; ++k)
-    bottom_.push_back(
-        geometry.layer_bottom(x_min_ + static_cast<double>(k) * chord_));
+    bottom_.push_back(geometry.layer_bottom(x_min_ + static_cast<double>(k) * chord_));
   double below = 0.;
   for (int k = 0; k + 1 < p.n_beds(); ++k)
     shares_.push_back(below += p.bed_share(k));
@@ -46,9 +45,9 @@ double BedPlanes::bottom(const double x) const
 int BedPlanes::bed_at(const Vec2 &place) const
 {
   const double share = (place.y - bottom(place.x)) / thickness_;
-  return static_cast<int>(
-      std::count_if(shares_.begin(), shares_.end(),
-                    [share](const double below) { return share > below; }));
+  return static_cast<int>(std::count_if(shares_.begin(), shares_.end(),
+                                        [share](const double below)
+                                        { return share > below; }));
 }
 
 std::vector<discrete::Fracture> BedPlanes::traces(const discrete::SmoothJoint &law) const
@@ -71,7 +70,8 @@ std::vector<discrete::Fracture> BedPlanes::traces(const discrete::SmoothJoint &l
   return traces;
 }
 
-discrete::FlatJoint joint_between(const LayerParameters &one, const LayerParameters &other)
+discrete::FlatJoint joint_between(const LayerParameters &one,
+                                  const LayerParameters &other)
 {
   const discrete::FlatJoint &a = one.joint, &b = other.joint;
   discrete::FlatJoint law = a;
@@ -107,8 +107,9 @@ LayerParameters read_rock(const std::string &file,
   LayerParameters rock = like;
   if (file.empty())
   {
-    problems.push_back("'Beds/Rocks' has an empty name in its list. Give a file (.prm) for "
-                       "each bed.");
+    problems.push_back(
+        "'Beds/Rocks' has an empty name in its list. Give a file (.prm) for "
+        "each bed.");
     return rock;
   }
   std::vector<std::string> unreadable;
@@ -122,12 +123,14 @@ LayerParameters read_rock(const std::string &file,
   {
     const Declarations::Entry *const entry = declarations.find(line.path);
     if (entry == nullptr)
-      problems.push_back(line.place + ": there is no entry '" + line.path +
-                         "' of a rock: a rock file has entries of 'Layer'. Leave it out.");
+      problems.push_back(
+          line.place + ": there is no entry '" + line.path +
+          "' of a rock: a rock file has entries of 'Layer'. Leave it out.");
     else if (is_of_whole_layer(line.path))
-      problems.push_back(line.place + ": '" + line.path +
-                         "' is of the whole layer, not of the rock of a bed. Set it in the "
-                         "deck.");
+      problems.push_back(
+          line.place + ": '" + line.path +
+          "' is of the whole layer, not of the rock of a bed. Set it in the "
+          "deck.");
     else if (!entry->pattern->match(line.value))
       problems.push_back(line.place + ": '" + line.path + "' = '" + line.value +
                          "' is out of range. Give " + range_in_words(*entry) + ".");
@@ -174,12 +177,12 @@ void check_beds(const Parameters &p, std::vector<Finding> &findings)
     findings.push_back({{"Components", "Layer/Representation"},
                         "beds are of grains. Give grains, or leave beds out."});
   if (p.has("gravity") || p.has("surface pressure"))
-    findings.push_back({{"Components"},
-                        "a stack of beds cannot be prestressed in this version. Leave out "
-                        "gravity and surface pressure, or beds."});
+    findings.push_back(
+        {{"Components"},
+         "a stack of beds cannot be prestressed in this version. Leave out "
+         "gravity and surface pressure, or beds."});
   if (p.has("calibration"))
-    findings.push_back({{"Components"},
-                        "a calibration finds one rock. Leave out beds."});
+    findings.push_back({{"Components"}, "a calibration finds one rock. Leave out beds."});
   for (const LayerParameters &bed : beds.layers)
     if (bed.bond_model != "flat joint")
     {
@@ -196,18 +199,20 @@ void check_beds(const Parameters &p, std::vector<Finding> &findings)
            "all beds are packed as one, with the layer's radius ratio (" +
                short_text(p.layer.radius_ratio) + ") and installation gap ratio (" +
                short_text(p.layer.installation_gap) +
-               "); a rock has others. Give rocks of one packing, and the layer the same."});
+               "); a rock has others. Give rocks of one packing, and the layer the "
+               "same."});
       break;
     }
   if (findings.empty())
     for (int k = 0; k < p.n_beds(); ++k)
       if (p.bed_share(k) * p.layer.grains_across < 2.)
       {
-        findings.push_back({{"Beds/Thickness ratios", "Layer/Grains across"},
-                            "bed " + std::to_string(k + 1) + " from below would be " +
-                                short_text(p.bed_share(k) * p.layer.grains_across) +
-                                " grains thick. Give at least two: more grains across, or "
-                                "a thicker bed."});
+        findings.push_back(
+            {{"Beds/Thickness ratios", "Layer/Grains across"},
+             "bed " + std::to_string(k + 1) + " from below would be " +
+                 short_text(p.bed_share(k) * p.layer.grains_across) +
+                 " grains thick. Give at least two: more grains across, or "
+                 "a thicker bed."});
       }
 }
 } // namespace antiform::cases

@@ -87,9 +87,9 @@ void add_check(CLI::App &app, CommandLine &line)
 
 void add_theory(CLI::App &app, CommandLine &line)
 {
-  CLI::App &command = *app.add_subcommand(
-      "theory",
-      "the closed forms for a deck's scene: regime, critical stress, wavelength, mechanism");
+  CLI::App &command =
+      *app.add_subcommand("theory", "the closed forms for a deck's scene: regime, "
+                                    "critical stress, wavelength, mechanism");
   add_deck(command, line.run);
   command.add_flag("--json", line.theory.json, "for programs (SI units)");
   command

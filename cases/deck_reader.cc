@@ -122,9 +122,9 @@ private:
     if (keyword == "set" && rest.find('=') != std::string::npos)
     {
       const std::size_t equals = rest.find('=');
-      add_entry({prefix() + tidy(rest.substr(0, equals)), tidy(rest.substr(equals + 1)),
-                 place},
-                file);
+      add_entry(
+          {prefix() + tidy(rest.substr(0, equals)), tidy(rest.substr(equals + 1)), place},
+          file);
     }
     else if (keyword == "subsection" && !rest.empty())
     {
@@ -181,7 +181,7 @@ private:
   std::vector<std::string> &problems_;
   std::map<std::string, int> n_unreadable_; ///< lines of a file
   std::map<std::pair<std::string, std::string>, std::string>
-      places_; ///< where a file has set an entry
+      places_;                          ///< where a file has set an entry
   std::vector<DeckLine> open_sections_; ///< path, own name, place
   std::vector<fs::path> open_files_;
 };

@@ -152,9 +152,9 @@ private:
   void refuse_what_rocks_say()
   {
     for (const DeckLine &line : text_.entries)
-      if (line.place == "--set" && (line.path == "Layer/Young modulus" ||
-                                    line.path == "Layer/Grain density" ||
-                                    line.path.find("Layer/Flat joint/") == 0))
+      if (line.place == "--set" &&
+          (line.path == "Layer/Young modulus" || line.path == "Layer/Grain density" ||
+           line.path.find("Layer/Flat joint/") == 0))
         problems_.push_back(set_place(line) + "the rocks of 'Beds/Rocks' say this for "
                                               "each bed. Change their files, or give "
                                               "others.");
