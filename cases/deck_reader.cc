@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -222,6 +223,32 @@ DeckText scan_deck(const std::string &file, std::vector<std::string> &problems)
   return deck;
 }
 
+namespace
+{
+/// What is said of two lists of components; nothing when only their order differs.
+std::vector<std::string> component_differences(const std::string &one,
+                                               const std::string &other)
+{
+  const auto words = [](const std::string &list)
+  {
+    std::set<std::string> names;
+    std::istringstream stream(list);
+    for (std::string name; std::getline(stream, name, ',');)
+      names.insert(tidy(name));
+    return names;
+  };
+  const std::set<std::string> first = words(one), second = words(other);
+  std::vector<std::string> differences;
+  for (const std::string &name : first)
+    if (second.count(name) == 0)
+      differences.push_back("a component '" + name + "' too many");
+  for (const std::string &name : second)
+    if (first.count(name) == 0)
+      differences.push_back("no component '" + name + "'");
+  return differences;
+}
+} // namespace
+
 std::vector<std::string> deck_differences(const std::string &deck,
                                           const std::string &other)
 {
@@ -234,12 +261,30 @@ std::vector<std::string> deck_differences(const std::string &deck,
     values[line.path].first = line.value;
   for (const DeckLine &line : second.entries)
     values[line.path].second = line.value;
-  std::vector<std::string> differences;
+  // A section that only one has is a consequence of what the scene is made of.
+  const auto section_of = [](const std::string &path)
+  { return path.find('/') == std::string::npos ? "" : path.substr(0, path.find('/')); };
+  std::set<std::string> of_first, of_second;
+  for (const DeckLine &line : first.entries)
+    of_first.insert(section_of(line.path));
+  for (const DeckLine &line : second.entries)
+    of_second.insert(section_of(line.path));
+  const auto components = values.find("Components");
+  std::vector<std::string> differences, consequences;
+  if (components != values.end())
+    differences =
+        component_differences(components->second.first, components->second.second);
+  const bool are_named = !differences.empty();
   for (const auto &[path, pair] : values)
-    if (pair.first != pair.second)
-      differences.push_back("'" + path + "' = '" + pair.first + "' and not '" +
-                            pair.second + "'");
-  return differences;
+    if (pair.first != pair.second && !(path == "Components" && are_named))
+    {
+      const std::string section = section_of(path);
+      const bool common = of_first.count(section) + of_second.count(section) == 2;
+      (common ? differences : consequences)
+          .push_back("'" + path + "' = '" + pair.first + "' and not '" + pair.second +
+                     "'");
+    }
+  return differences.empty() ? consequences : differences;
 }
 
 void scan_override(const std::string &text,

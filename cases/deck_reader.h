@@ -32,7 +32,8 @@ void scan_override(const std::string &text,
                    std::vector<std::string> &problems);
 
 /// What two texts without includes set differently: "'Section/Entry' = 'this' and not
-/// 'that'" for each entry.
+/// 'that'" for each entry; of a component that only one has its name alone, "a component
+/// 'this' too many" or "no component 'that'".
 std::vector<std::string> deck_differences(const std::string &deck,
                                           const std::string &other);
 

@@ -166,6 +166,26 @@ TEST(DeckReader, TellsWhatTwoDecksSetDifferently)
   EXPECT_EQ(differences[0], "'Layer/Seed' = '1' and not '2'");
 }
 
+TEST(DeckReader, NamesAComponentThatOnlyOneDeckHasInPlaceOfItsSections)
+{
+  const std::string section = "subsection Layer\nset Seed = 1\nend\n",
+                    beds = "subsection Beds\nset Friction = 0.6\nset Rocks = a, b\nend\n"
+                           "subsection Bed 1\nset Seed = 3\nend\n",
+                    one = "set Components = layer, beds, walls\n" + section + beds,
+                    other = "set Components = layer, walls, damping\n" + section;
+  EXPECT_EQ(deck_differences(one, other),
+            (std::vector<std::string>{"a component 'beds' too many",
+                                      "no component 'damping'"}));
+  // Another order is another deck too, and has no other name.
+  EXPECT_EQ(deck_differences("set Components = a, b\n", "set Components = b, a\n"),
+            (std::vector<std::string>{"'Components' = 'a, b' and not 'b, a'"}));
+  // What else differs is named still.
+  EXPECT_EQ(deck_differences(one, "set Components = layer, walls\n"
+                                  "subsection Layer\nset Seed = 2\nend\n"),
+            (std::vector<std::string>{"a component 'beds' too many",
+                                      "'Layer/Seed' = '1' and not '2'"}));
+}
+
 TEST(DeckReader, RefusesAFolderAndAMissingDeck)
 {
   const Scratch scratch;

@@ -198,6 +198,26 @@ TEST(Beds, AreNotResumedWithAnotherRock)
       << outcome.output;
 }
 
+TEST(Beds, AreNamedAloneWhereAResumedRunHasNone)
+{
+  const TemporaryFolder folder;
+  const std::string command =
+      "run " ANTIFORM_SOURCE_DIR "/cases/laboratory/uniaxial.prm -o " +
+      folder.path("run") + set({"Layer/Grains across=10", "Run/End shortening=1e-3"});
+  EXPECT_EQ(run_program(command + " --time-limit 0.01" +
+                        set({"Components=layer, beds, walls, damping",
+                             stack({rock_1, rock_2}), "Beds/Thickness ratios=1, 1"}))
+                .status,
+            3);
+  const Outcome outcome = run_program(command + " --resume");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("a component 'beds' too many"), std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(occurrences(outcome.output, "beds"), 1u) << outcome.output;
+  EXPECT_EQ(occurrences(outcome.output, "Beds/"), 0u) << outcome.output;
+  EXPECT_EQ(occurrences(outcome.output, "'Bed 1/"), 0u) << outcome.output;
+}
+
 TEST(Beds, ThatSlideAreNotCountedAsFractures)
 {
   const TemporaryFolder folder;
