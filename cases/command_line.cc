@@ -13,7 +13,10 @@ void add_deck(CLI::App &command, RunOptions &run)
 {
   command.add_option("DECK", run.deck, "parameter file (.prm)")->required();
   command
-      .add_option("--set", run.overrides, "\"Section/Entry=value\": overrides the deck")
+      .add_option(
+          "--set", run.overrides,
+          "\"Section/Entry=value\": overrides the deck; of two for one entry the last "
+          "counts")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false)

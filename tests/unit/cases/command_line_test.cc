@@ -1,5 +1,6 @@
 #include "cases/command_line.h"
 
+#include "cases/deck_reader.h"
 #include "cases/interrupt.h"
 
 #include <gtest/gtest.h>
@@ -99,6 +100,16 @@ TEST(CommandLine, EveryCommandHasHelpWithAnExample)
     const CommandLine line = parse_command_line(arguments);
     EXPECT_EQ(line.command, Command::help);
     EXPECT_NE(line.help_text.find("Example:\n  antiform"), std::string::npos) << command;
+  }
+}
+
+TEST(CommandLine, HelpSaysWhichOfTwoOverridesCounts)
+{
+  for (const std::string command : {"run", "check", "theory", "calibrate"})
+  {
+    const std::string help = parse_command_line({command, "--help"}).help_text;
+    EXPECT_NE(tidy(help).find("of two for one entry the last counts"), std::string::npos)
+        << help;
   }
 }
 
