@@ -25,6 +25,20 @@ void declare_strengths(double &tensile_strength,
 
 namespace
 {
+/// From soft clay to diamond, of a rock as of its bonds: what is meant in MPa or GPa is
+/// far below.
+Number moduli()
+{
+  return Number::between(1e6, 1e12);
+}
+
+/// Disks with k_s beyond ten times k_n shear less than they shorten, which no rock does;
+/// below a hundredth of it they have lost their shear stiffness.
+Number stiffness_ratios()
+{
+  return Number::between(0.1, 100.);
+}
+
 void declare(discrete::FlatJoint &joint, Declarations &entries)
 {
   entries.enter("Flat joint");
@@ -32,9 +46,9 @@ void declare(discrete::FlatJoint &joint, Declarations &entries)
       "Effective modulus", joint.effective_modulus,
       "E*, of grains and bonds; the stiffness of a joint follows from it and the "
       "two radii [Pa].",
-      Number::above(0.));
+      moduli());
   entries.number("Stiffness ratio", joint.stiffness_ratio,
-                 "kappa, normal over shear stiffness [-].", Number::above(0.));
+                 "kappa, normal over shear stiffness [-].", stiffness_ratios());
   declare_strengths(joint.tensile_strength, joint.cohesion, joint.tan_friction,
                     joint.residual_friction, entries);
   entries.number("Residual cohesion", joint.residual_cohesion,
@@ -58,10 +72,10 @@ void declare(discrete::ParallelBond &bond, Declarations &entries)
   entries.number("Bond modulus", bond.bond_modulus,
                  "E_c, of the cement; its stiffness follows from it and the two radii "
                  "[Pa].",
-                 Number::above(0.));
+                 moduli());
   entries.number("Stiffness ratio", bond.stiffness_ratio,
                  "kappa, normal over shear stiffness of the cement [-].",
-                 Number::above(0.));
+                 stiffness_ratios());
   entries.number("Tensile strength", bond.tensile_strength,
                  "sigma_c, normal stress at the cement's edge at which it breaks [Pa].",
                  Number::at_least(0.));
@@ -80,9 +94,9 @@ void declare(discrete::ParallelBond &bond, Declarations &entries)
                  Number::at_least(0.).up_to(1.));
   entries.number("Contact modulus", bond.contact_modulus,
                  "E*, of the linear contact of the grains beside the cement [Pa].",
-                 Number::above(0.));
+                 moduli());
   entries.number("Contact stiffness ratio", bond.contact_stiffness_ratio,
-                 "Normal over shear stiffness of the contact [-].", Number::above(0.));
+                 "Normal over shear stiffness of the contact [-].", stiffness_ratios());
   entries.number("Residual friction", bond.residual_friction,
                  "mu, friction coefficient of the contact [-].", Number::at_least(0.));
   entries.leave();
@@ -92,9 +106,9 @@ void declare(discrete::ContactBond &bond, Declarations &entries)
 {
   entries.enter("Contact bond");
   entries.number("Effective modulus", bond.effective_modulus,
-                 "E*, of the glued contact [Pa].", Number::above(0.));
+                 "E*, of the glued contact [Pa].", moduli());
   entries.number("Stiffness ratio", bond.stiffness_ratio,
-                 "kappa, normal over shear stiffness [-].", Number::above(0.));
+                 "kappa, normal over shear stiffness [-].", stiffness_ratios());
   entries.number("Tensile strength", bond.tensile_strength,
                  "Tension at which the glue breaks, over the width 2 min(R) [Pa].",
                  Number::at_least(0.));
@@ -181,14 +195,14 @@ void declare(LayerParameters &layer, Declarations &entries)
       "Young modulus", layer.young_modulus,
       "E of the rock as a laboratory measures it; grains have theirs from the flat "
       "joint [Pa].",
-      Number::above(0.));
+      moduli());
   entries.number("Poisson ratio", layer.poisson_ratio,
                  "nu of the rock, plane strain [-].", Number::at_least(0.).below(0.5));
   entries.number(
       "UCS", layer.compressive_strength,
       "Uniaxial compressive strength of the rock; the slenderness ratio needs it "
       "[Pa].",
-      Number::above(0.));
+      Number::between(1e4, 1e11));
   entries.number("Grains across", layer.grains_across,
                  "h over the mean grain diameter: the resolution of the scene [-].",
                  Number::at_least(2.));

@@ -226,6 +226,30 @@ TEST(Parameters, RefusesNumbersThatAreNone)
       1500.);
 }
 
+TEST(Parameters, RefusesModuliAndStiffnessRatiosThatNoRockHas)
+{
+  const Scratch scratch;
+  const std::string deck = scratch.write("a.prm", coupled);
+  const std::string bonds = "Layer/Flat joint/Effective modulus",
+                    ratio = "Layer/Flat joint/Stiffness ratio";
+  // In GPa both, as which they belong together.
+  const auto problems =
+      problems_of(deck, {"Layer/Young modulus=56", bonds + "=50", "Layer/UCS=162"});
+  EXPECT_TRUE(tells(problems, {"--set", "'Layer/Young modulus' = '56'",
+                               "Give a number >= 1e+06 and <= 1e+12 [Pa]"}));
+  EXPECT_TRUE(tells(problems, {"'" + bonds + "' = '50'", ">= 1e+06", "[Pa]"}));
+  EXPECT_TRUE(tells(problems, {"'Layer/UCS' = '162'", ">= 10000", "[Pa]"}));
+  EXPECT_EQ(problems.size(), 3u);
+  for (const std::string value : {"1e-9", "0.09", "1e3"})
+    EXPECT_TRUE(tells(problems_of(deck, {ratio + "=" + value}),
+                      {"'" + ratio + "' = '" + value + "'", ">= 0.1 and <= 100"}));
+  // Clay and diamond.
+  EXPECT_TRUE(problems_of(deck, {"Layer/Young modulus=2e6", bonds + "=1e6",
+                                 "Layer/UCS=1e4"})
+                  .empty());
+  EXPECT_TRUE(problems_of(deck, {"Layer/Young modulus=1e12", bonds + "=1e12"}).empty());
+}
+
 TEST(Parameters, EffectiveDeckGivesTheSameParametersToTheLastBit)
 {
   const Scratch scratch;
