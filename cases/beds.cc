@@ -98,6 +98,39 @@ bool is_of_whole_layer(const std::string &path)
       return true;
   return false;
 }
+
+/// Is @p path that of something within the section @p outer?
+bool is_within(const std::string &path, const std::string &outer)
+{
+  return path.compare(0, outer.size() + 1, outer + "/") == 0;
+}
+
+/// Sections of the text that a rock does not have; said once, not again for what is in
+/// them.
+std::vector<std::string> refuse_unknown_sections(const DeckText &text,
+                                                 const Declarations &declarations,
+                                                 std::vector<std::string> &problems)
+{
+  std::vector<std::string> unknown;
+  const auto is_inside_unknown = [&](const std::string &path)
+  {
+    return std::any_of(unknown.begin(), unknown.end(),
+                       [&](const std::string &section)
+                       { return is_within(path, section); });
+  };
+  for (const DeckLine &line : text.sections)
+    if (!is_inside_unknown(line.path) &&
+        std::none_of(declarations.entries().begin(), declarations.entries().end(),
+                     [&](const Declarations::Entry &entry)
+                     { return is_within(entry.path, line.path); }))
+    {
+      problems.push_back(
+          line.place + ": there is no subsection '" + line.path +
+          "' of a rock: a rock file has entries of 'Layer'. Leave it out.");
+      unknown.push_back(line.path);
+    }
+  return unknown;
+}
 } // namespace
 
 LayerParameters read_rock(const std::string &file,
@@ -119,9 +152,18 @@ LayerParameters read_rock(const std::string &file,
   dealii::ParameterHandler prm;
   Declarations declarations(prm);
   declare(rock, declarations);
+  const std::vector<std::string> unknown =
+      refuse_unknown_sections(text, declarations, problems);
+  if (text.entries.empty() && unreadable.empty())
+    problems.push_back("'Beds/Rocks': " + file +
+                       " sets no entry, and the bed would be of the layer's rock. Give a "
+                       "file with the moduli and strengths of a rock.");
   for (const DeckLine &line : text.entries)
   {
     const Declarations::Entry *const entry = declarations.find(line.path);
+    if (std::any_of(unknown.begin(), unknown.end(),
+                    [&](const std::string &s) { return is_within(line.path, s); }))
+      continue;
     if (entry == nullptr)
       problems.push_back(
           line.place + ": there is no entry '" + line.path +
@@ -133,7 +175,8 @@ LayerParameters read_rock(const std::string &file,
           "deck.");
     else if (!entry->pattern->match(line.value))
       problems.push_back(line.place + ": '" + line.path + "' = '" + line.value +
-                         "' is out of range. Give " + range_in_words(*entry) + ".");
+                         "' is out of range. Give " + range_in_words(*entry) + " " +
+                         unit_of(*entry) + ".");
     else
       declarations.set(line.path, line.value);
   }

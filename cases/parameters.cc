@@ -86,13 +86,10 @@ public:
     find_data("Calibration/Laboratory data", p.calibration.data);
     find_data("Fractures/Table", p.fractures.table);
     if (p.has("beds"))
-      for (std::string &rock : p.beds.rocks)
-      {
-        find_data("Beds/Rocks", rock);
-        p.beds.layers.push_back(read_rock(rock, p.layer, problems_));
-      }
-    if (p.has("beds"))
+    {
+      read_rocks(p);
       refuse_what_rocks_say();
+    }
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())
@@ -145,6 +142,19 @@ private:
       problems_.push_back(begin + " twice. Name it once.");
     else
       components.push_back(name);
+  }
+
+  void read_rocks(Parameters &p)
+  {
+    for (std::string &rock : p.beds.rocks)
+    {
+      find_data("Beds/Rocks", rock);
+      std::vector<std::string> found;
+      p.beds.layers.push_back(read_rock(rock, p.layer, found));
+      for (const std::string &problem : found) // once, be it the rock of several beds
+        if (std::find(problems_.begin(), problems_.end(), problem) == problems_.end())
+          problems_.push_back(problem);
+    }
   }
 
   /// A stack has its bonds from the rock files: an override that looks as if it did
