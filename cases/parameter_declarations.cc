@@ -35,7 +35,9 @@ void declare(MatrixParameters &matrix, Declarations &entries)
   entries.choice(
       "Representation", matrix.representation,
       "Finite elements (joined to a layer of grains by the bridging domain), or "
-      "grains everywhere.",
+      "grains everywhere. Joints of matrix grains have the elements, radius multiplier "
+      "and element moment of 'Layer/Flat joint' in the deck, beds or not; their moduli "
+      "follow from the stiffness contrast and Poisson ratio.",
       "continuum|grains");
   entries.number("Stiffness contrast", matrix.stiffness_contrast,
                  "E/E0, modulus of the layer over that of the matrix [-].",

@@ -88,7 +88,7 @@ public:
     if (p.has("beds"))
     {
       read_rocks(p);
-      refuse_what_rocks_say();
+      refuse_what_rocks_say(p);
     }
     for (const Finding &finding : check_parameters(p))
       report(finding);
@@ -159,12 +159,19 @@ private:
 
   /// A stack has its bonds from the rock files: an override that looks as if it did
   /// something would be lost.
-  void refuse_what_rocks_say()
+  void refuse_what_rocks_say(const Parameters &p)
   {
+    const auto is_of_matrix_too = [](const std::string &path)
+    {
+      return path == "Layer/Flat joint/Elements" ||
+             path == "Layer/Flat joint/Radius multiplier" ||
+             path == "Layer/Flat joint/Element moment";
+    };
     for (const DeckLine &line : text_.entries)
       if (line.place == "--set" &&
           (line.path == "Layer/Young modulus" || line.path == "Layer/Grain density" ||
-           line.path.find("Layer/Flat joint/") == 0))
+           line.path.find("Layer/Flat joint/") == 0) &&
+          !(p.has("matrix") && is_of_matrix_too(line.path)))
         problems_.push_back(set_place(line) + "the rocks of 'Beds/Rocks' say this for "
                                               "each bed. Change their files, or give "
                                               "others.");

@@ -78,3 +78,13 @@ TEST(RockFiles, WithNumbersThatNoRockHasAreRefused)
       refuses(of_joints("set Cohesion = much\n"),
               {"'Layer/Flat joint/Cohesion' = 'much'", "Give a number >= 0 [Pa]"}));
 }
+
+TEST(RockFiles, LeaveTheShapeOfTheJointsOfAMatrixToTheDeck)
+{
+  const Scratch scratch;
+  const std::string deck = scratch.write("deck.prm", deck_text(rocks + "rock-2.prm"));
+  const std::string matrix = "Components=layer, beds, matrix, walls";
+  EXPECT_TRUE(problems_of(deck, {matrix, "Layer/Flat joint/Elements=2"}).empty());
+  EXPECT_EQ(problems_of(deck, {"Layer/Flat joint/Elements=2"}).size(), 1u);
+  EXPECT_EQ(problems_of(deck, {matrix, "Layer/Flat joint/Cohesion=1e6"}).size(), 1u);
+}
