@@ -1,15 +1,11 @@
 #include "cases/beds.h"
 
 #include "cases/deck_reader.h"
-#include "coupling/state_image.h"
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 
 namespace antiform::cases
 {
@@ -183,28 +179,37 @@ LayerParameters read_rock(const std::string &file,
   return rock;
 }
 
-std::string text_of_files(const Parameters &p)
+std::string rock_text(const LayerParameters &rock)
 {
-  std::string text;
-  for (int k = 0; p.has("beds") && k < p.n_beds(); ++k)
+  LayerParameters copy = rock;
+  dealii::ParameterHandler prm;
+  Declarations declarations(prm);
+  declare(copy, declarations);
+  std::string text, section;
+  const auto leave = [&]
   {
-    LayerParameters rock = p.bed(k);
-    dealii::ParameterHandler prm;
-    Declarations declarations(prm);
-    declare(rock, declarations);
-    std::ostringstream out;
-    prm.print_parameters(out, dealii::ParameterHandler::PRM |
-                                  dealii::ParameterHandler::KeepDeclarationOrder);
-    text += "subsection Bed " + std::to_string(k + 1) + "\n" + out.str() + "end\n";
-  }
-  if (p.has("fractures") && !p.fractures.table.empty())
+    text += section.empty() ? "" : "  end\n";
+    section.clear();
+  };
+  for (const Declarations::Entry &entry : declarations.entries())
   {
-    std::ifstream file(p.fractures.table, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    text += "set Checksum of Fractures/Table = " +
-            std::to_string(coupling::crc64(bytes.data(), bytes.size())) + "\n";
+    if (is_of_whole_layer(entry.path))
+      continue;
+    const std::string path = entry.path.substr(entry.path.find('/') + 1);
+    const std::size_t slash = path.find('/');
+    const std::string inner = slash == std::string::npos ? "" : path.substr(0, slash);
+    if (inner != section)
+    {
+      leave();
+      section = inner;
+      text += section.empty() ? "" : "  subsection " + section + "\n";
+    }
+    text += std::string(inner.empty() ? "  " : "    ") + "set " +
+            path.substr(inner.empty() ? 0 : slash + 1) + " = " + entry.default_value +
+            "\n";
   }
-  return text;
+  leave();
+  return "subsection Layer\n" + text + "end\n";
 }
 
 void check_beds(const Parameters &p, std::vector<Finding> &findings)

@@ -39,9 +39,8 @@ LayerParameters read_rock(const std::string &file,
                           const LayerParameters &like,
                           std::vector<std::string> &problems);
 
-/// What the files say that a deck names (rocks of beds, the table of fractures), as lines
-/// of a deck: by it a resumed run sees that they have changed. Empty without such files.
-std::string text_of_files(const Parameters &parameters);
+/// The text of a rock file that says all of @p rock.
+std::string rock_text(const LayerParameters &rock);
 
 /// What is wrong with the beds of a deck.
 void check_beds(const Parameters &parameters, std::vector<Finding> &findings);

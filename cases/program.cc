@@ -1,13 +1,13 @@
 #include "cases/buckling_run.h"
 #include "cases/program.h"
 
-#include "cases/beds.h"
 #include "cases/circle_record.h"
 #include "cases/deck_reader.h"
 #include "cases/interrupt.h"
 #include "cases/layer_packing.h"
 #include "cases/output_directory.h"
 #include "cases/recorder.h"
+#include "cases/run_deck.h"
 #include "cases/run_log.h"
 #include "cases/scene.h"
 #include "cases/static_run.h"
@@ -23,7 +23,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 namespace antiform::cases
@@ -35,17 +34,6 @@ using Timer = std::chrono::steady_clock;
 double seconds_since(const Timer::time_point begin)
 {
   return std::chrono::duration<double>(Timer::now() - begin).count();
-}
-
-void write_text(const std::string &path, const std::string &text)
-{
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file)
-    throw InputError({"'" + path +
-                      "' cannot be written: the disk is full or the folder "
-                      "is not writable. Choose another with -o."});
 }
 
 /// What a resumed run needs of the time before it.
@@ -66,7 +54,7 @@ public:
       , options_(options)
       , communicator_(communicator)
       , log_(log)
-      , deck_(effective_deck(parameters) + text_of_files(parameters))
+      , deck_(RunDeck(parameters).everything)
       , begin_(Timer::now())
   {
   }
@@ -333,8 +321,7 @@ std::optional<coupling::StateReader> open_state(const Parameters &parameters,
     state.emplace(path, communicator);
     std::string deck;
     state->text("deck", deck);
-    if (const std::string asked = effective_deck(parameters) + text_of_files(parameters);
-        deck != asked)
+    if (const std::string asked = RunDeck(parameters).everything; deck != asked)
     {
       std::string problem =
           "'" + path +
@@ -387,13 +374,11 @@ int run(const Parameters &parameters,
   const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
   std::optional<coupling::StateReader> state =
       open_state(parameters, options, communicator);
-  std::filesystem::create_directories(options.output + "/fields");
-  RunLog log(options.output + "/log.txt", first, options.resume);
   std::string failure; // of the first rank, told on all
   if (first && !options.resume)
     try
     {
-      write_text(options.output + "/deck.prm", effective_deck(parameters));
+      RunDeck(parameters).write(options.output);
     }
     catch (const InputError &error)
     {
@@ -402,6 +387,8 @@ int run(const Parameters &parameters,
   failure = dealii::Utilities::MPI::broadcast(communicator, failure);
   if (!failure.empty())
     throw InputError({failure});
+  std::filesystem::create_directories(options.output + "/fields");
+  RunLog log(options.output + "/log.txt", first, options.resume);
   log.line("antiform " ANTIFORM_VERSION ": " + parameters.title);
 
   if (parameters.run.driver == "static")

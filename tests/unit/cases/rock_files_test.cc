@@ -1,4 +1,7 @@
-// The rock files of a stack of beds: what they may say.
+// The rock files of a stack of beds: what they may say, and the copies of a run.
+#include "cases/beds.h"
+#include "cases/run_deck.h"
+
 #include "unit/cases/scratch.h"
 
 #include <gtest/gtest.h>
@@ -77,6 +80,71 @@ TEST(RockFiles, WithNumbersThatNoRockHasAreRefused)
   EXPECT_TRUE(
       refuses(of_joints("set Cohesion = much\n"),
               {"'Layer/Flat joint/Cohesion' = 'much'", "Give a number >= 0 [Pa]"}));
+}
+
+TEST(RockFiles, OfARunSayTheSameWhereverItsDirectoryIs)
+{
+  const Scratch scratch;
+  scratch.write("rock.prm", of_joints("set Cohesion = 12345678.912345679\n"
+                                      "set Friction angle = 33.3333333333333357\n"
+                                      "set Element moment = false\n"));
+  const Parameters p = read_deck(scratch.write("deck.prm", deck_text("rock.prm")), {});
+  scratch.write("run/summary.json", "");
+  const RunDeck deck(p);
+  deck.write(scratch.path("run"));
+  std::filesystem::remove(scratch.path("rock.prm"));
+  std::filesystem::rename(scratch.path("run"), scratch.path("elsewhere"));
+
+  const Parameters q = read_deck(scratch.path("elsewhere/deck.prm"), {});
+  ASSERT_EQ(q.n_beds(), 3);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_EQ(rock_text(q.bed(k)), rock_text(p.bed(k))) << k;
+  EXPECT_EQ(q.bed(1).joint.cohesion, 12345678.912345679);
+  EXPECT_EQ(q.bed(1).joint.tan_friction, p.bed(1).joint.tan_friction);
+  EXPECT_FALSE(q.bed(2).joint.element_moment);
+  EXPECT_EQ(RunDeck(q).everything, deck.everything); // so that it can be resumed
+}
+
+TEST(TableOfFractures, GoesWithTheRunByteByByte)
+{
+  const Scratch scratch;
+  const std::string table = "# of a scan line\nx1_m,y1_m,x2_m,y2_m\n-4,-1,-2,1\n";
+  scratch.write("mine/scan.csv", table);
+  scratch.write("run/x", "");
+  const Parameters p = read_deck(
+      scratch.write("mine/deck.prm",
+                    "set Components = layer, fractures, walls\nsubsection Layer\n"
+                    "set Shape = straight\nend\nsubsection Fractures\n"
+                    "set Table = scan.csv\nend\n"),
+      {});
+  const RunDeck deck(p);
+  deck.write(scratch.path("run"));
+  std::filesystem::remove_all(scratch.path("mine"));
+  const Parameters q = read_deck(scratch.path("run/deck.prm"), {});
+  EXPECT_EQ(q.fractures.table, scratch.path("run/fractures.csv"));
+  std::ifstream copy(q.fractures.table);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(copy), {}), table);
+  EXPECT_EQ(RunDeck(q).everything, deck.everything);
+  // Repeated where it stands, over itself.
+  EXPECT_NO_THROW(RunDeck(q).write(scratch.path("run")));
+}
+
+TEST(RockFiles, OfTheUserAreNotWrittenOver)
+{
+  const Scratch scratch;
+  const std::string text = of_layer("");
+  scratch.write("rock-2.prm", text);
+  const Parameters p = read_deck(scratch.write("mine.prm", deck_text("rock-2.prm")), {});
+  EXPECT_THROW(RunDeck(p).write(scratch.path("")), InputError);
+  EXPECT_FALSE(std::filesystem::exists(scratch.path("deck.prm")));
+  std::ifstream file(scratch.path("rock-2.prm"));
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
+  // A run that has failed before its first step leaves its own.
+  scratch.write("run/x", "");
+  RunDeck(p).write(scratch.path("run"));
+  scratch.write("rock-2.prm", of_layer("set Young modulus = 50e9\n"));
+  EXPECT_NO_THROW(
+      RunDeck(read_deck(scratch.path("mine.prm"), {})).write(scratch.path("run")));
 }
 
 TEST(RockFiles, LeaveTheShapeOfTheJointsOfAMatrixToTheDeck)

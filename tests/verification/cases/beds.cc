@@ -2,6 +2,7 @@
 #include "support/tiny_run.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 using namespace antiform::test;
@@ -196,6 +197,35 @@ TEST(Beds, AreNotResumedWithAnotherRock)
   EXPECT_NE(outcome.output.find("'Bed 2/Layer/Flat joint/Tensile strength'"),
             std::string::npos)
       << outcome.output;
+}
+
+TEST(Beds, AreResumedFromTheDeckOfTheRunWhereverItStands)
+{
+  const TemporaryFolder folder;
+  const std::string rock = folder.path("rock.prm");
+  std::ofstream(rock) << contents(rock_1);
+  const std::string options =
+      set({"Components=layer, beds, walls, damping", stack({rock, rock_2}),
+           "Beds/Thickness ratios=1, 1", "Layer/Grains across=12",
+           "Run/End shortening=1e-4"});
+  const std::string deck = ANTIFORM_SOURCE_DIR "/cases/laboratory/uniaxial.prm";
+  EXPECT_EQ(run_program("run " + deck + options + " -o " + folder.path("run")).status, 0);
+  EXPECT_EQ(run_program("run " + deck + options + " -o " + folder.path("cut") +
+                        " --time-limit 0.01")
+                .status,
+            3);
+  std::filesystem::remove(rock);
+  std::filesystem::rename(folder.path("cut"), folder.path("moved"));
+  const Outcome resumed = run_program("run " + folder.path("moved/deck.prm") + " -o " +
+                                      folder.path("moved") + " --resume");
+  EXPECT_EQ(resumed.status, 0) << resumed.output;
+  expect_same_run(folder.path("moved"), folder.path("run"));
+  // Or repeated, into a directory that then holds the rocks too.
+  const Outcome repeated = run_program("run " + folder.path("moved/deck.prm") + " -o " +
+                                       folder.path("again"));
+  EXPECT_EQ(repeated.status, 0) << repeated.output;
+  expect_same_run(folder.path("again"), folder.path("run"));
+  expect_same_file("rock-1.prm", folder.path("again"), folder.path("run"));
 }
 
 TEST(Beds, AreNamedAloneWhereAResumedRunHasNone)
