@@ -148,6 +148,11 @@ bool Parameters::is_bridged() const
          matrix.representation == "continuum";
 }
 
+bool Parameters::is_bare_mesh() const
+{
+  return has("layer") && !has("matrix") && layer.representation == "continuum";
+}
+
 double Parameters::layer_length() const
 {
   if (layer.length_ratio > 0.)

@@ -7,20 +7,18 @@ namespace antiform::cases
 {
 namespace
 {
-void declare_matrix_mesh(MatrixParameters &matrix, Declarations &entries)
+/// Of finite elements in layer and matrix; @p bare: there is no matrix.
+void declare_mesh(MatrixParameters &matrix, const bool bare, Declarations &entries)
 {
-  entries.number(
-      "Mesh modulus ratio", matrix.mesh_modulus_ratio,
-      "Moduli of the mesh over those of the matrix grains; other than 1 only to "
-      "measure what a mismatch does [-].",
-      Number::above(0.));
   entries.number("Cell size ratio", matrix.cell_size,
-                 "Size of the cells near the layer over the mean grain diameter [-].",
+                 "Size of the cells in and near the layer over the mean grain diameter "
+                 "[-].",
                  Number::above(0.));
-  entries.number(
-      "Largest cell ratio", matrix.largest_cell,
-      "Height of the cells away from the layer over the mean grain diameter [-].",
-      Number::above(0.));
+  if (!bare)
+    entries.number(
+        "Largest cell ratio", matrix.largest_cell,
+        "Height of the cells away from the layer over the mean grain diameter [-].",
+        Number::above(0.));
   entries.number("Cell aspect ratio", matrix.cell_aspect,
                  "Width of the columns of cells over the size of the cells near the "
                  "layer; more than 1 only without grains [-].",
@@ -29,9 +27,15 @@ void declare_matrix_mesh(MatrixParameters &matrix, Declarations &entries)
                 "Polynomial degree of the finite elements [-].", Number::between(1, 2));
 }
 
-void declare(MatrixParameters &matrix, Declarations &entries)
+void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
 {
   entries.enter("Matrix");
+  if (bare)
+  {
+    declare_mesh(matrix, bare, entries);
+    entries.leave();
+    return;
+  }
   entries.choice(
       "Representation", matrix.representation,
       "Finite elements (joined to a layer of grains by the bridging domain), or "
@@ -64,7 +68,12 @@ void declare(MatrixParameters &matrix, Declarations &entries)
                  "open; buckling driver), or frictionless (no shear, may open; grains).",
                  "cemented|sliding|frictionless");
   entries.choice("Join", matrix.join, "How grains and mesh meet.", "bridging domain");
-  declare_matrix_mesh(matrix, entries);
+  entries.number(
+      "Mesh modulus ratio", matrix.mesh_modulus_ratio,
+      "Moduli of the mesh over those of the matrix grains; other than 1 only to "
+      "measure what a mismatch does [-].",
+      Number::above(0.));
+  declare_mesh(matrix, bare, entries);
   entries.number("Tile size ratio", matrix.tile_size,
                  "Period of the tile that matrix grains are cut from over the mean grain "
                  "diameter [-].",
@@ -333,7 +342,8 @@ const std::vector<Section> &all_sections()
   static const std::vector<Section> sections = {
       {"Layer", "component layer"},
       {"Beds", "component beds"},
-      {"Matrix", "component matrix"},
+      {"Matrix", "component matrix; of a layer of finite elements without it Cell size "
+                 "ratio, Cell aspect ratio and Element degree"},
       {"Layer material", "the layer is continuum"},
       {"Matrix material", "component matrix, which is continuum"},
       {"Bridging domain", "the layer is grains and the matrix is continuum"},
@@ -358,6 +368,8 @@ bool is_read(const std::string &section, const Parameters &p)
     return true;
   if (section == "Bridging domain")
     return p.is_bridged();
+  if (section == "Matrix" && p.is_bare_mesh())
+    return true;
   if (section == "Layer material")
     return p.has_layer_mesh();
   if (section == "Matrix material")
@@ -385,7 +397,7 @@ void declare_parameters(Parameters &p,
     else if (section == "Beds")
       declare(p.beds, entries);
     else if (section == "Matrix")
-      declare(p.matrix, entries);
+      declare(p.matrix, p.is_bare_mesh(), entries);
     else if (section == "Layer material")
       declare(section, p.layer_material, entries);
     else if (section == "Matrix material")

@@ -70,7 +70,6 @@ public:
   {
     Parameters p;
     find_components(p);
-    refuse_unknown_names(p);
 
     std::vector<std::string> sections;
     for (const Section &section : all_sections())
@@ -79,6 +78,7 @@ public:
     dealii::ParameterHandler prm;
     Declarations declarations(prm);
     declare_parameters(p, sections, declarations);
+    refuse_unknown_names(p, declarations);
     for (const Declarations::Entry &entry : declarations.entries())
       if (const auto line = last_.find(entry.path); line != last_.end())
         read_value(entry, line->second, declarations);
@@ -184,7 +184,8 @@ private:
                        { return e.path.compare(0, path.size() + 1, path + "/") == 0; });
   }
 
-  void refuse_unknown_names(const Parameters &p)
+  /// @p read: the entries that this scene has a use for.
+  void refuse_unknown_names(const Parameters &p, const Declarations &read)
   {
     std::vector<std::string> unknown_sections;
     const auto inside_unknown = [&](const std::string &path)
@@ -204,12 +205,13 @@ private:
     for (const DeckLine &line : text_.entries)
     {
       const std::string parent = parent_of(line.path);
-      if (known_.find(line.path) != nullptr && line.place == "--set" && !parent.empty() &&
-          !is_read(section_of(line.path), p))
-        problems_.push_back(set_place(line) + "this scene has no use for '" +
-                            section_of(line.path) +
-                            "', which is read when: " + read_when(section_of(line.path)) +
-                            ". Leave it out, or change the scene.");
+      if (known_.find(line.path) != nullptr && line.place == "--set" &&
+          read.find(line.path) == nullptr)
+        problems_.push_back(
+            set_place(line) + "this scene has no use for '" +
+            (is_read(section_of(line.path), p) ? line.path : section_of(line.path)) +
+            "', which is read when: " + read_when(section_of(line.path)) +
+            ". Leave it out, or change the scene.");
       if (known_.find(line.path) != nullptr || inside_unknown(line.path))
         continue;
       if (!parent.empty() && !is_known_section(parent))

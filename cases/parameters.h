@@ -315,6 +315,8 @@ struct Parameters
   bool is_nonlinear() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
   bool is_bridged() const;
+  /// Layer of finite elements without a matrix.
+  bool is_bare_mesh() const;
 
   // Derived geometry, in metres, from the ratios.
   double layer_length() const;   ///< L: wavelength (cosine) or length (straight) [m]

@@ -250,6 +250,35 @@ TEST(Parameters, RefusesModuliAndStiffnessRatiosThatNoRockHas)
   EXPECT_TRUE(problems_of(deck, {"Layer/Young modulus=1e12", bonds + "=1e12"}).empty());
 }
 
+TEST(Parameters, BareLayerOfFiniteElementsHasTheMeshOfTheMatrixSection)
+{
+  const Scratch scratch;
+  const std::string deck = scratch.write(
+      "a.prm", "set Components = layer, walls\nsubsection Layer\nset Representation = "
+               "continuum\nend\nsubsection Matrix\nset Burial depth ratio = 5\n"
+               "set Cell size ratio = 0.5\nend\nsubsection Run\nset Driver = static\n"
+               "set End shortening = 1e-3\nend\n");
+  const Parameters p =
+      read_deck(deck, {"Matrix/Element degree=2", "Matrix/Cell aspect ratio=3"});
+  EXPECT_EQ(p.matrix.cell_size, 0.5);
+  EXPECT_EQ(p.matrix.element_degree, 2);
+  EXPECT_EQ(p.matrix.cell_aspect, 3.);
+  const std::string effective = effective_deck(p);
+  EXPECT_EQ(effective.find("Burial depth ratio"), std::string::npos);
+  const Parameters again = read_deck(scratch.write("deck.prm", effective), {});
+  EXPECT_EQ(again.matrix.cell_size, 0.5);
+  EXPECT_EQ(again.matrix.element_degree, 2);
+  EXPECT_EQ(effective_deck(again), effective);
+  // What is of the matrix alone is of no use here, nor is any of it to bare grains.
+  for (const char *entry : {"Matrix/Burial depth ratio=3", "Matrix/Largest cell ratio=9",
+                            "Matrix/Stiffness contrast=10"})
+    EXPECT_TRUE(tells(problems_of(deck, {entry}),
+                      {std::string("--set \"") + entry, "no use for", "Element degree"}));
+  EXPECT_TRUE(tells(problems_of(deck, {"Layer/Representation=grains",
+                                       "Run/Driver=dynamic", "Matrix/Element degree=2"}),
+                    {"no use for 'Matrix'"}));
+}
+
 TEST(Parameters, EffectiveDeckGivesTheSameParametersToTheLastBit)
 {
   const Scratch scratch;

@@ -106,6 +106,36 @@ end
   EXPECT_EQ(result(summary, "half_waves"), 1.);
 }
 
+TEST(BucklingRun, OfABareLayerConvergesWithTheMeshOfTheDeck)
+{
+  const TemporaryFolder folder;
+  std::ofstream(folder.path("bare.prm")) << R"(set Title      = bare
+set Components = layer, walls
+subsection Layer
+  set Representation = continuum
+  set Shape          = straight
+  set Length ratio   = 40
+  set Grains across  = 8
+end
+subsection Run
+  set Driver = buckling
+  set Modes  = 1
+end
+)";
+  const auto stress = [&](const std::string &name, const std::string &entry)
+  {
+    const Outcome outcome = run_program("run " + folder.path("bare.prm") + " -o " +
+                                        folder.path(name) + set({entry}));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return result(summary_of(folder.path(name)), "critical_stress");
+  };
+  // Quadratic elements err by the fourth power of the cells: they stand for the exact load.
+  const double exact = stress("quadratic", "Matrix/Element degree=2"),
+               coarse = stress("coarse", "Matrix/Cell size ratio=2") / exact - 1.,
+               fine = stress("fine", "Matrix/Cell size ratio=1") / exact - 1.;
+  EXPECT_NEAR(std::log2(coarse / fine), 2., 0.1) << coarse << " -> " << fine;
+}
+
 TEST(BucklingRun, RefusesWhatTheLinearTheoryLeavesOut)
 {
   const TemporaryFolder folder;
