@@ -17,9 +17,6 @@ struct Mechanism
   double pinned, guided;        ///< gamma with the matrix; ends that turn, or do not [-]
   double bare_pinned, bare_guided; ///< the same without it [-]
   bool crushes_first;              ///< long before it could fold
-
-  /// Share of the crushing strain at which the layer gives way [-].
-  double relative_strength() const { return pinned < 1. ? pinned : 1.; }
 };
 
 /// The deck's layer as the closed forms see it: one layer, whatever its beds.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace antiform::cases
 {
@@ -42,6 +43,54 @@ double rows_of_cells(const Parameters &p, const SectionGeometry &g)
   return rows;
 }
 
+/// Modulus of one layer of one rock that bends like the beds: as one when cemented, each
+/// on its own when they slide [Pa].
+double bending_modulus(const Parameters &p)
+{
+  const bool slide = p.has("beds") && p.beds.interface == "frictional";
+  double stretching = 0., moment = 0., bending = 0., below = 0.;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+  {
+    const double modulus = p.bed(bed).young_modulus, share = p.bed_share(bed);
+    const double lever = slide ? 0. : below + 0.5 * share;
+    stretching += modulus * share;
+    moment += modulus * share * lever;
+    bending += modulus * share * (share * share / 12. + lever * lever);
+    below += share;
+  }
+  return 12. * (bending - moment * moment / stretching);
+}
+
+/// Strain at which a layer or specimen fails, roughly [-].
+double predict_strain_at_peak(const Parameters &p, const SectionGeometry &g)
+{
+  // Between platens all beds have one strain, and the weakest breaks first; in tension at
+  // three quarters of its bonds' strength, as specimens of rock 1 do.
+  double crushing = std::numeric_limits<double>::infinity(), parting = crushing,
+         thickest = 0.;
+  for (int k = 0; k < p.n_beds(); ++k)
+  {
+    const LayerParameters &bed = p.bed(k);
+    crushing = std::min(crushing, bed.compressive_strength / bed.young_modulus);
+    parting = std::min(parting, 0.75 * discrete::constants(bed.law()).tensile_strength /
+                                    bed.young_modulus);
+    thickest = std::max(thickest, p.bed_share(k) * g.thickness());
+  }
+  if (p.walls.action == "pull")
+    return parting;
+  if (g.amplitude() == 0.)
+    return crushing;
+  // A bent layer folds, if it can; or a force N and its moment N a0/2, which alone crush
+  // at N_0 and N_0 h/4, crush it together.
+  Parameters one = p;
+  one.layer.young_modulus = bending_modulus(p);
+  one.layer.compressive_strength = crushing * p.young_modulus();
+  const bool slide = p.has("beds") && p.beds.interface == "frictional";
+  const double h = slide ? thickest : g.thickness();
+  return crushing *
+         std::min(expect_mechanism(one, g).pinned, 1. / (1. + 2. * g.amplitude() / h));
+}
+
 /// At which a run ends, roughly [-].
 double predict_shortening(const Parameters &p, const SectionGeometry &g)
 {
@@ -49,13 +98,11 @@ double predict_shortening(const Parameters &p, const SectionGeometry &g)
     return p.run.end_shortening;
   if (p.confinement() != nullptr) // goes on well beyond the strain that breaks it bare
     return std::min(5e-3, p.run.longest_shortening);
-  const double crushing = p.layer.compressive_strength / p.layer.young_modulus;
-  // Rocks break in tension at a tenth of the strain; a bent layer folds, if it can.
-  const double share = p.walls.action == "pull" ? 0.1
-                       : g.amplitude() > 0. ? expect_mechanism(p, g).relative_strength()
-                                            : 1.;
-  return std::min(p.run.strain_multiple_of_peak * share * crushing,
-                  p.run.longest_shortening);
+  // The stress falls to its share somewhere on the way to the multiple.
+  const double multiple = p.run.stress_ratio_of_peak > 0.
+                              ? 0.5 * (1. + p.run.strain_multiple_of_peak)
+                              : p.run.strain_multiple_of_peak;
+  return std::min(multiple * predict_strain_at_peak(p, g), p.run.longest_shortening);
 }
 
 double predict_memory(const Parameters &p, const Sizes &sizes)
@@ -89,9 +136,13 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
   }
   if (p.has("walls") && p.run.steps_in_time())
   {
-    // Steps in which a wave passes a mean grain, of a packing with this spread of sizes.
+    // Steps in which a wave passes a mean grain, of packings with this spread of sizes,
+    // measured: scaled to the least step of a matrix, to the mean of a bare layer. Smooth
+    // joints count as isotropic springs, which takes another tenth.
+    const double undamped =
+        (p.has("matrix") ? 1.6 : 1.8) * (p.has_smooth_joints() ? 1.1 : 1.);
     const double steps_per_grain =
-        1.6 * std::sqrt(1. + (p.has("damping") ? p.damping.coefficient : 0.)) /
+        undamped * std::sqrt(1. + (p.has("damping") ? p.damping.coefficient : 0.)) /
         p.run.safety;
     const double transit = steps_per_grain * g.length() / d;
     const double millistrain = 1e3 * predict_shortening(p, g);
