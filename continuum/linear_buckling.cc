@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace antiform::continuum
 {
@@ -117,13 +118,21 @@ Anasazi::Eigensolution<double, MultiVector> largest(const InverseOperator &inver
   Teuchos::ParameterList settings;
   settings.set("Which", which);
   settings.set("Block Size", block);
-  settings.set("Num Blocks", std::max(12, 2 * wanted + 4));
+  const int fit = inverse.OperatorDomainMap().NumGlobalElements() / block - 1;
+  settings.set("Num Blocks", std::min(std::max(12, 2 * wanted + 4), fit));
   settings.set("Maximum Restarts", static_cast<int>(options.max_restarts));
   settings.set("Convergence Tolerance", options.tolerance);
   settings.set("Verbosity", 0);
   Anasazi::BlockKrylovSchurSolMgr<double, MultiVector, Epetra_Operator> solver(problem,
                                                                                settings);
-  solver.solve(); // what has converged of it counts
+  try
+  {
+    solver.solve(); // what has converged of it counts
+  }
+  catch (const std::logic_error &) // Anasazi: a basis that cannot be made orthogonal
+  {
+    DirectSolver::refuse_singular(std::numeric_limits<double>::quiet_NaN(), 1.);
+  }
   const auto &solution = problem->getSolution();
   if (solution.numVecs == 0)
     throw NumericalError("linear buckling",

@@ -20,7 +20,8 @@ struct BucklingOptions
   unsigned int n_modes = 4;
   double tolerance = 1e-8; ///< residual over the eigenvalue
   unsigned int max_restarts = 200;
-  std::function<bool()> stop; ///< asked between solves, alike on all ranks; may be empty
+  std::function<bool()> stop =
+      {}; ///< asked between solves, alike on all ranks; may be empty
 };
 
 /// Thrown on all ranks where BucklingOptions::stop said so.
