@@ -311,13 +311,18 @@ int run_nonlinear(const Parameters &p,
     {
       status = "failed";
       failure = error.what();
-      break;
     }
+    // Of a step that failed the state is that of its last good part.
+    const double reached = newton.steps().empty() ? 0. : newton.steps().back().factor;
+    if (!failure.empty() && (step == 0 || reached <= (step - 1.) / n_steps))
+      break;
     std::size_t now = 0;
     for (const continuum::NewtonSolver::Step &done : newton.steps())
       now += done.residuals.size() - 1;
+    if (!failure.empty())
+      section.loaded().assemble(u, reached, 0., nullptr); // its reactions
     const Reading reading = section.read(u, 0.);
-    record.add(step, to * section.end_shortening(), reading, now - iterations,
+    record.add(step, reached * section.end_shortening(), reading, now - iterations,
                section.solid(), u);
     iterations = now;
     char text[160];
@@ -325,6 +330,8 @@ int run_nonlinear(const Parameters &p,
                   "  step %d: shortening %.4e, axial stress %.4e Pa, amplitude %.4g m",
                   step, record.reached, reading.axial_stress, reading.fold_amplitude);
     log.line(text);
+    if (!failure.empty())
+      break;
   }
 
   Summary summary = summary_of_solid(p, section.solid(), begin);
