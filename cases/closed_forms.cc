@@ -7,6 +7,7 @@
 #include "continuum/strut_theory.h"
 
 #include <cmath>
+#include <cstdio>
 
 namespace antiform::cases
 {
@@ -192,6 +193,31 @@ TheoryRow cover_stiffness(const theory::SupportedLayer &layer)
           true};
 }
 
+/// How far the critical state of the deck's scene is from what the theory of thin beams
+/// and small strain holds for. Buckling runs of finite elements are 2 % lower at a wave
+/// of 35 h (contrast 1e3), 7 % at 18 h and 29 % at 8 h.
+TheoryRow trust_row(const Parameters &p)
+{
+  theory::SupportedLayer scene{layer_of(p), matrix_sides(p)};
+  scene.bonded = p.matrix.interface == "cemented";
+  const std::string name = "trust", label = "how far to trust them";
+  const auto state = scene.critical();
+  if (!state)
+    return no_row(name, label, "no critical wave");
+  const double wave = state->wavelength / p.layer.thickness;
+  const double strain =
+      state->stress / theory::plane_modulus(p.layer.young_modulus, p.layer.poisson_ratio);
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%s: wave %.3g h (holds within 2 %% from 35 h on), "
+                "strain before it %.2g %% (below 1 %%)",
+                wave >= 35. && strain < 0.01 ? "yes"
+                : wave >= 15.                ? "some per cent too high"
+                                             : "no, far too high",
+                wave, 100. * strain);
+  return words_row(name, label, text);
+}
+
 TheorySection critical_states(const Parameters &p, const SectionGeometry &g)
 {
   TheorySection section{"critical",
@@ -229,6 +255,7 @@ TheorySection critical_states(const Parameters &p, const SectionGeometry &g)
     section.rows.push_back(critical_row("half_spaces", "half-spaces on both sides",
                                         between(half_space, half_space)));
   }
+  section.rows.push_back(trust_row(p));
   section.rows.push_back(
       figure_row("section_length", "the section has room for", g.length(), "m"));
   return section;

@@ -32,7 +32,7 @@ Elastic elastic_layer(const int grains_across, const std::string &directory)
 
 // Grains touch a rim with their edges, and half of an outer grain has no joint: a section of
 // n grains has at most one grain less that carries, in bending its cube. Moduli of single
-// packings scatter by some 2 %. Measured: -6.2 and -3.3 % of the section's stiffness, -9.3
+// packings scatter by some 2 %. Measured with one packing: -6.2 and -3.3 % of the section's stiffness, -9.3
 // and -5.8 % of the buckling load, with 10 and 20 grains against 40 (wanted: 3 and 5 %).
 TEST(Resolution, CostsALayerAtMostHalfAGrainOnEitherSideLong)
 {
