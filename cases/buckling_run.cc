@@ -17,6 +17,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <optional>
 
 namespace antiform::cases
@@ -187,6 +188,68 @@ void write_modes(const Scene &scene,
   if (first)
     coupling::write_pvd(directory + "/fields.pvd", fields);
 }
+/// Loads and shapes of the scene's straight section. Throws BucklingStopped.
+std::vector<Mode> find_modes(const Scene &scene,
+                             const std::function<bool()> &stop,
+                             std::vector<continuum::BucklingMode> &shapes)
+{
+  const Parameters &p = scene.parameters;
+  const continuum::ElasticSolid &solid = *scene.solid;
+  constexpr double shortening = 1e-6; // any: linear
+  const std::vector<continuum::Tie> ties =
+      p.has("matrix") && p.matrix.interface == "sliding"
+          ? continuum::sliding_interfaces(solid)
+          : std::vector<continuum::Tie>();
+  const continuum::DofReduction reduction(
+      solid, section_supports(p, scene.geometry, solid, shortening), ties);
+  const continuum::Vector straight =
+      continuum::solve_reduced(solid, reduction, solid.make_vector());
+  const double stress = layer_stress(scene, straight);
+  shapes = continuum::lowest_buckling_modes(
+      solid, solid.geometric_stiffness(straight), reduction,
+      {static_cast<unsigned int>(p.run.modes), 1e-9, 200, stop});
+  std::vector<Mode> modes;
+  for (const continuum::BucklingMode &shape : shapes)
+    modes.push_back({shape.load_factor * shortening, shape.load_factor * stress,
+                     half_waves(scene, shape.shape)});
+  return modes;
+}
+
+void log_modes(const std::vector<Mode> &modes, RunLog &log)
+{
+  for (std::size_t k = 0; k < modes.size(); ++k)
+  {
+    char row[128];
+    std::snprintf(row, sizeof row,
+                  "  mode %2zu: shortening %.5e, layer stress %.5e Pa, %u half waves",
+                  k + 1, modes[k].shortening, modes[k].stress, modes[k].half_waves);
+    log.line(row);
+  }
+}
+
+/// The summary's results, and in words what they are against the closed form.
+std::string compare(const Scene &scene,
+                    const std::vector<Mode> &modes,
+                    std::map<std::string, Result> &results)
+{
+  const Mode &lowest = modes.front();
+  const double wavelength = dominant_wavelength(modes, scene.geometry.length());
+  results = {{"critical_stress", {lowest.stress, "Pa"}},
+             {"critical_shortening", {lowest.shortening, "-"}},
+             {"half_waves", {static_cast<double>(lowest.half_waves), "-"}},
+             {"dominant_wavelength", {wavelength, "m"}}};
+  char text[128];
+  std::snprintf(text, sizeof text, "the layer buckles at %.4g Pa, wavelength %.4g m",
+                lowest.stress, wavelength);
+  const auto theory = theory_of(scene.parameters);
+  if (!theory)
+    return text;
+  results["theory_stress"] = {theory->stress, "Pa"};
+  results["theory_wavelength"] = {theory->wavelength, "m"};
+  return std::string(text) + " (closed form of a long layer: stress " +
+         percent(lowest.stress / theory->stress) + ", wavelength " +
+         percent(wavelength / theory->wavelength) + ")";
+}
 } // namespace
 
 int run_buckling(const Parameters &p,
@@ -196,14 +259,6 @@ int run_buckling(const Parameters &p,
 {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
-  const auto stop = [&]
-  {
-    const double elapsed =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const bool mine = interrupt_signal() != 0 ||
-                      (options.time_limit > 0. && elapsed > options.time_limit);
-    return dealii::Utilities::MPI::max(mine ? 1 : 0, communicator) != 0;
-  };
   const std::unique_ptr<Scene> scene =
       build(p, communicator, [&](const std::string &what) { log.line("  " + what); });
   continuum::ElasticSolid &solid = *scene->solid;
@@ -214,77 +269,37 @@ int run_buckling(const Parameters &p,
 
   log.line("  " + std::to_string(solid.dof_handler().n_dofs()) +
            " dofs: straight section, then modes");
-  constexpr double shortening = 1e-6; // any: linear
-  const std::vector<continuum::Tie> ties =
-      p.has("matrix") && p.matrix.interface == "sliding"
-          ? continuum::sliding_interfaces(solid)
-          : std::vector<continuum::Tie>();
-  const continuum::DofReduction reduction(
-      solid, section_supports(p, scene->geometry, solid, shortening), ties);
-  const continuum::Vector straight =
-      continuum::solve_reduced(solid, reduction, solid.make_vector());
-  const double stress = layer_stress(*scene, straight);
   std::vector<continuum::BucklingMode> shapes;
+  std::vector<Mode> modes;
+  std::string status = "completed", words;
   try
   {
-    shapes = continuum::lowest_buckling_modes(
-        solid, solid.geometric_stiffness(straight), reduction,
-        {static_cast<unsigned int>(p.run.modes), 1e-9, 200, stop});
+    modes = find_modes(
+        *scene, [&] { return must_stop(begin, options.time_limit, communicator); },
+        shapes);
   }
   catch (const continuum::BucklingStopped &)
   {
-    Summary summary = summary_of_solid(p, solid, begin);
-    summary.status = "interrupted";
-    summarise_effects(p, 1, summary);
-    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      write_summary(options.output + "/summary.json", summary);
-    log.line("interrupted: a buckling run keeps no checkpoint, run it again");
-    return 3;
+    status = "interrupted";
+    words = "a buckling run keeps no checkpoint, run it again";
   }
-  std::vector<Mode> modes;
-  for (const continuum::BucklingMode &shape : shapes)
-    modes.push_back({shape.load_factor * shortening, shape.load_factor * stress,
-                     half_waves(*scene, shape.shape)});
-  write_modes(*scene, shapes, modes, options.output);
 
-  const Mode &lowest = modes.front();
-  const double wavelength = dominant_wavelength(modes, scene->geometry.length());
   Summary summary = summary_of_solid(p, solid, begin);
-  summary.status = "completed";
-  summary.steps = 0;
+  summary.status = status;
   summary.solves = 2; // straight section, and one factor for all modes
-  summary.results = {{"critical_stress", {lowest.stress, "Pa"}},
-                     {"critical_shortening", {lowest.shortening, "-"}},
-                     {"half_waves", {static_cast<double>(lowest.half_waves), "-"}},
-                     {"dominant_wavelength", {wavelength, "m"}}};
-  std::string compared;
-  if (const auto theory = theory_of(p))
+  if (status == "completed")
   {
-    summary.results["theory_stress"] = {theory->stress, "Pa"};
-    summary.results["theory_wavelength"] = {theory->wavelength, "m"};
-    compared = " (closed form of a long layer: stress " +
-               percent(lowest.stress / theory->stress) + ", wavelength " +
-               percent(wavelength / theory->wavelength) + ")";
+    write_modes(*scene, shapes, modes, options.output);
+    words = compare(*scene, modes, summary.results);
+    summary.warnings = doubts(*scene, modes, p.run.modes);
+    log_modes(modes, log);
   }
-  summary.warnings = doubts(*scene, modes, p.run.modes);
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     write_summary(options.output + "/summary.json", summary);
-  for (std::size_t k = 0; k < modes.size(); ++k)
-  {
-    char row[128];
-    std::snprintf(row, sizeof row,
-                  "  mode %2zu: shortening %.5e, layer stress %.5e Pa, %u half waves",
-                  k + 1, modes[k].shortening, modes[k].stress, modes[k].half_waves);
-    log.line(row);
-  }
   for (const std::string &warning : summary.warnings)
     log.line("warning: " + warning);
-  char text[128];
-  std::snprintf(text, sizeof text,
-                "completed: the layer buckles at %.4g Pa, wavelength %.4g m",
-                lowest.stress, wavelength);
-  log.line(text + compared);
-  return 0;
+  log.line(status + ": " + words);
+  return status == "completed" ? 0 : 3;
 }
 } // namespace antiform::cases

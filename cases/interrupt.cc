@@ -1,5 +1,7 @@
 #include "cases/interrupt.h"
 
+#include <csignal>
+
 #include <initializer_list>
 
 namespace antiform::cases
@@ -31,5 +33,18 @@ void catch_interrupts()
 int interrupt_signal()
 {
   return caught;
+}
+
+bool must_stop(const std::chrono::steady_clock::time_point begin,
+               const double time_limit,
+               const MPI_Comm communicator)
+{
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  const int mine =
+      interrupt_signal() != 0 || (time_limit > 0. && elapsed.count() > time_limit) ? 1
+                                                                                   : 0;
+  int any = 0;
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, communicator);
+  return any != 0;
 }
 } // namespace antiform::cases

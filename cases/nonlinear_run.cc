@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <optional>
 
 namespace antiform::cases
@@ -32,8 +33,10 @@ constexpr double solid_fraction = 0.84; // of the grains that the densities are 
 /// What the run says of one equilibrium.
 struct Reading
 {
-  double wall_force = 0.;     ///< on layer and matrix [N]
-  double axial_stress = 0.;   ///< on the layer over its thickness, compression > 0 [Pa]
+  double wall_force = 0.; ///< on layer and matrix [N]
+  /// Of the layer, compression > 0 [Pa]: the walls' force over its thickness; in a matrix
+  /// the mean of Cauchy's stress in the cells beside a wall.
+  double axial_stress = 0.;
   double fold_amplitude = 0.; ///< crest over troughs [m]
   double plastic_share = 0.;  ///< of the layer's area that has yielded [-]
 };
@@ -166,30 +169,30 @@ Reading Section::read(const Vector &displacement, const double time_step) const
   const MPI_Comm communicator = mesh_->get_communicator();
   const double small = 1e-9 * geometry_.length();
   const Vector &reactions = loaded_->reactions();
-  double force = 0., layer_force = 0.;
+  double force = 0.;
   for (const auto dof : solid_.locally_owned())
-    if (const Point<2> x = solid_.support_point(dof);
-        solid_.component(dof) == 0 && x[0] < geometry_.x_min() + small)
-    {
+    if (solid_.component(dof) == 0 &&
+        solid_.support_point(dof)[0] < geometry_.x_min() + small)
       force += reactions(dof);
-      if (!is_in_layer(x, small))
-        continue;
-      // A node on the interface reacts for both sides, by their stiffness.
-      const bool inside = is_in_layer(x, -small) || !p_.has("matrix");
-      const double contrast = p_.matrix.stiffness_contrast;
-      layer_force += reactions(dof) * (inside ? 1. : contrast / (1. + contrast));
-    }
-  double yielded = 0., area = 0.;
+  double yielded = 0., area = 0., pressed = 0., beside_wall = 0.;
+  const double first_column =
+      geometry_.x_min() + geometry_.length() / geometry_.n_columns();
   for (const auto &point : solid_.point_states(displacement, time_step))
     if (point.material == layer_material_id)
     {
       yielded += point.plastic_strain > 0. ? point.area : 0.;
       area += point.area;
+      const double of_wall = point.place[0] < first_column ? point.area : 0.;
+      pressed -= of_wall * point.stress.xx;
+      beside_wall += of_wall;
     }
   Reading reading;
   reading.wall_force = dealii::Utilities::MPI::sum(force, communicator);
+  // Nodes between layer and matrix react for both; without a matrix the force is exact.
+  pressed = dealii::Utilities::MPI::sum(pressed, communicator) /
+            dealii::Utilities::MPI::sum(beside_wall, communicator);
   reading.axial_stress =
-      dealii::Utilities::MPI::sum(layer_force, communicator) / geometry_.thickness();
+      p_.has("matrix") ? pressed : reading.wall_force / geometry_.thickness();
   const double half = 0.5 * geometry_.wavelength();
   reading.fold_amplitude = geometry_.amplitude() + rise(displacement, 0.) -
                            0.5 * (rise(displacement, -half) + rise(displacement, half));
@@ -267,6 +270,85 @@ std::map<std::string, Result> results_of(const NonlinearRecord &record,
   }
   return results;
 }
+/// How a run went.
+struct Course
+{
+  std::string status = "completed", failure;
+  std::size_t iterations = 0; ///< of Newton's method
+
+  int exit_status() const
+  {
+    return status == "completed" ? 0 : status == "failed" ? 2 : 3;
+  }
+};
+
+/// One load step from an equilibrium; the first is that of the loads alone. What went
+/// wrong, or nothing.
+std::string take_step(const int step,
+                      const int n_steps,
+                      const double time_step,
+                      continuum::NewtonSolver &newton,
+                      Vector &displacement)
+{
+  try // raised on all ranks together
+  {
+    if (step == 0)
+      newton.solve(0., 0., displacement);
+    else
+      newton.advance((step - 1.) / n_steps, static_cast<double>(step) / n_steps, 1,
+                     displacement, time_step);
+  }
+  catch (const NumericalError &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+/// Load steps to the end, or to where there is no equilibrium any more: the state is then
+/// that of the last good part of the step.
+Course shorten(const Parameters &p,
+               const std::function<bool()> &must_stop_now,
+               Section &section,
+               continuum::NewtonSolver &newton,
+               NonlinearRecord &record,
+               RunLog &log)
+{
+  const int n_steps = section.end_shortening() > 0. ? p.run.load_steps : 0;
+  const double time_step = n_steps > 0 ? p.run.duration / n_steps : 0.;
+  Vector u = section.solid().make_vector();
+  Course course;
+  for (int step = 0; step <= n_steps && course.status == "completed"; ++step)
+  {
+    if (must_stop_now())
+    {
+      course.status = "interrupted";
+      break;
+    }
+    course.failure = take_step(step, n_steps, time_step, newton, u);
+    const double reached = newton.steps().empty() ? 0. : newton.steps().back().factor;
+    if (!course.failure.empty())
+    {
+      course.status = "failed";
+      if (step == 0 || reached <= (step - 1.) / n_steps)
+        break;
+      section.loaded().assemble(u, reached, 0., nullptr); // its reactions
+    }
+    std::size_t iterations = 0;
+    for (const continuum::NewtonSolver::Step &done : newton.steps())
+      iterations += done.residuals.size() - 1;
+    const Reading reading = section.read(u, 0.);
+    record.add(step, reached * section.end_shortening(), reading,
+               iterations - course.iterations, section.solid(), u);
+    course.iterations = iterations;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "  step %d: shortening %.4e, axial stress %.4e Pa, amplitude %.4g m",
+                  step, record.reached, reading.axial_stress, reading.fold_amplitude);
+    log.line(text);
+  }
+  return course;
+}
 } // namespace
 
 int run_nonlinear(const Parameters &p,
@@ -275,71 +357,21 @@ int run_nonlinear(const Parameters &p,
                   const MPI_Comm communicator)
 {
   const auto begin = std::chrono::steady_clock::now();
+  catch_interrupts();
   log.line("  building the mesh");
   Section section(p, communicator);
   continuum::NewtonSolver newton(section.loaded(), {});
-  Vector u = section.solid().make_vector();
   NonlinearRecord record(options.output, communicator);
-  const bool shortened = section.end_shortening() > 0.;
-  const int n_steps = shortened ? p.run.load_steps : 0;
-  const double time_step = shortened ? p.run.duration / n_steps : 0.;
-
-  std::string status = "completed", failure;
-  std::size_t iterations = 0;
-  catch_interrupts();
-  int step = 0;
-  for (; step <= n_steps; ++step) // the first: its loads, not shortened yet
-  {
-    const double elapsed =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const bool stop = interrupt_signal() != 0 ||
-                      (options.time_limit > 0. && elapsed > options.time_limit);
-    if (dealii::Utilities::MPI::max(stop ? 1 : 0, communicator) != 0)
-    {
-      status = "interrupted";
-      break;
-    }
-    const double to = n_steps > 0 ? static_cast<double>(step) / n_steps : 0.;
-    try // raised on all ranks together
-    {
-      if (step == 0)
-        newton.solve(0., 0., u);
-      else
-        newton.advance((step - 1.) / n_steps, to, 1, u, time_step);
-    }
-    catch (const NumericalError &error)
-    {
-      status = "failed";
-      failure = error.what();
-    }
-    // Of a step that failed the state is that of its last good part.
-    const double reached = newton.steps().empty() ? 0. : newton.steps().back().factor;
-    if (!failure.empty() && (step == 0 || reached <= (step - 1.) / n_steps))
-      break;
-    std::size_t now = 0;
-    for (const continuum::NewtonSolver::Step &done : newton.steps())
-      now += done.residuals.size() - 1;
-    if (!failure.empty())
-      section.loaded().assemble(u, reached, 0., nullptr); // its reactions
-    const Reading reading = section.read(u, 0.);
-    record.add(step, reached * section.end_shortening(), reading, now - iterations,
-               section.solid(), u);
-    iterations = now;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "  step %d: shortening %.4e, axial stress %.4e Pa, amplitude %.4g m",
-                  step, record.reached, reading.axial_stress, reading.fold_amplitude);
-    log.line(text);
-    if (!failure.empty())
-      break;
-  }
+  const Course course = shorten(
+      p, [&] { return must_stop(begin, options.time_limit, communicator); }, section,
+      newton, record, log);
 
   Summary summary = summary_of_solid(p, section.solid(), begin);
-  summary.status = status;
-  if (!failure.empty())
-    summary.warnings.push_back(failure);
+  summary.status = course.status;
+  if (!course.failure.empty())
+    summary.warnings.push_back(course.failure);
   summary.steps = summary.solves = static_cast<std::int64_t>(newton.steps().size());
-  summary.results = results_of(record, iterations, shortened);
+  summary.results = results_of(record, course.iterations, section.end_shortening() > 0.);
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     write_summary(options.output + "/summary.json", summary);
@@ -348,12 +380,12 @@ int run_nonlinear(const Parameters &p,
   char text[160];
   std::snprintf(text, sizeof text,
                 "%s: %zu equilibria, %zu Newton iterations, peak %.4g Pa at %.4g",
-                status.c_str(), newton.steps().size(), iterations,
+                course.status.c_str(), newton.steps().size(), course.iterations,
                 record.peak.axial_stress, record.strain_at_peak);
-  log.line(std::string(text) + (status == "interrupted"
+  log.line(std::string(text) + (course.status == "interrupted"
                                     ? "; a static run keeps no checkpoint, run it again "
                                       "into another directory"
                                     : ""));
-  return status == "completed" ? 0 : status == "failed" ? 2 : 3;
+  return course.exit_status();
 }
 } // namespace antiform::cases

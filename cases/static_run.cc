@@ -78,13 +78,7 @@ int run_static(const Parameters &p,
   catch_interrupts();
   while (step < n_steps)
   {
-    const double elapsed =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const int stop = interrupt_signal() != 0 ||
-                             (options.time_limit > 0. && elapsed > options.time_limit)
-                         ? 1
-                         : 0;
-    if (dealii::Utilities::MPI::max(stop, communicator) != 0)
+    if (must_stop(begin, options.time_limit, communicator))
     {
       status = "interrupted";
       break;

@@ -114,7 +114,7 @@ set Components = layer, walls
 subsection Layer
   set Representation = continuum
   set Shape          = straight
-  set Length ratio   = 40
+  set Length ratio   = 20
   set Grains across  = 16
 end
 subsection Run
