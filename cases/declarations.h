@@ -172,6 +172,9 @@ std::string short_text(double number);
 /// The part of it that packings and measurement circles add. \pre nothing else is wrong
 void check_packing(const Parameters &parameters, std::vector<Finding> &findings);
 void check_circles(const Parameters &parameters, std::vector<Finding> &findings);
+/// The parts of it that finite elements and the buckling driver add.
+void check_materials(const Parameters &parameters, std::vector<Finding> &findings);
+void check_buckling(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that a calibration adds.
 void check_calibration(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases
