@@ -188,6 +188,7 @@ void write_modes(const Scene &scene,
   if (first)
     coupling::write_pvd(directory + "/fields.pvd", fields);
 }
+
 /// Loads and shapes of the scene's straight section. Throws BucklingStopped.
 std::vector<Mode> find_modes(const Scene &scene,
                              const std::function<bool()> &stop,

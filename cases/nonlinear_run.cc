@@ -60,11 +60,10 @@ public:
 
   continuum::NonlinearSolid &solid() { return solid_; }
   continuum::LoadedSolid &loaded() { return *loaded_; }
-  const SectionGeometry &geometry() const { return geometry_; }
   /// At load factor 1; without walls the sides are held.
   double end_shortening() const { return p_.has("walls") ? p_.run.end_shortening : 0.; }
 
-  Reading read(const Vector &displacement, double time_step) const;
+  Reading read(const Vector &displacement) const;
 
 private:
   /// Pressure under which the section was laid down, at a height [Pa].
@@ -164,7 +163,7 @@ double Section::rise(const Vector &displacement, const double x) const
          dealii::Utilities::MPI::sum(n, communicator);
 }
 
-Reading Section::read(const Vector &displacement, const double time_step) const
+Reading Section::read(const Vector &displacement) const
 {
   const MPI_Comm communicator = mesh_->get_communicator();
   const double small = 1e-9 * geometry_.length();
@@ -177,7 +176,7 @@ Reading Section::read(const Vector &displacement, const double time_step) const
   double yielded = 0., area = 0., pressed = 0., beside_wall = 0.;
   const double first_column =
       geometry_.x_min() + geometry_.length() / geometry_.n_columns();
-  for (const auto &point : solid_.point_states(displacement, time_step))
+  for (const auto &point : solid_.point_states(displacement))
     if (point.material == layer_material_id)
     {
       yielded += point.plastic_strain > 0. ? point.area : 0.;
@@ -270,6 +269,7 @@ std::map<std::string, Result> results_of(const NonlinearRecord &record,
   }
   return results;
 }
+
 /// How a run went.
 struct Course
 {
@@ -337,7 +337,7 @@ Course shorten(const Parameters &p,
     std::size_t iterations = 0;
     for (const continuum::NewtonSolver::Step &done : newton.steps())
       iterations += done.residuals.size() - 1;
-    const Reading reading = section.read(u, 0.);
+    const Reading reading = section.read(u);
     record.add(step, reached * section.end_shortening(), reading,
                iterations - course.iterations, section.solid(), u);
     course.iterations = iterations;

@@ -196,6 +196,11 @@ std::vector<BucklingMode> lowest_buckling_modes(const ElasticSolid &solid,
     shape.update_ghost_values();
     modes.push_back({factor, shape});
   }
+  if (modes.empty())
+    throw NumericalError("linear buckling",
+                         "none of the lowest loads converged to one above 0; ask for "
+                         "more modes, or see whether a part is loose. Loads found",
+                         0., wanted);
   std::sort(modes.begin(), modes.end(),
             [](const BucklingMode &a, const BucklingMode &b)
             { return a.load_factor < b.load_factor; });

@@ -56,7 +56,6 @@ TEST(BucklingRun, FindsStressAndWaveOfTheClosedForm)
     ASSERT_EQ(stress.size(), 3u);
     for (std::size_t k = 0; k < 3; ++k)
     {
-      EXPECT_GE(stress[k], stress[0]);
       // Nothing holds the section across: E' in the layer.
       EXPECT_NEAR(stress[k] / (modulus * shortening[k]), 1., 1e-3);
       EXPECT_TRUE(std::filesystem::exists(directory + "/fields/mode_000" +
