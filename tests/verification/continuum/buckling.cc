@@ -26,7 +26,8 @@ public:
         const double length,
         const unsigned int n_columns,
         const double foundation,
-        const Ends ends = Ends::pinned)
+        const Ends ends = Ends::pinned,
+        const double shear_layer = 0.)
       : layer_(layer)
       , length_(length)
       , triangulation_(MPI_COMM_WORLD)
@@ -36,6 +37,9 @@ public:
   {
     if (foundation > 0.)
       solid_.add_to_stiffness(winkler_foundation(solid_, {boundary::bottom}, foundation));
+    if (shear_layer > 0.)
+      solid_.add_to_stiffness(
+          pasternak_foundation(solid_, {boundary::bottom}, shear_layer));
     dealii::SymmetricTensor<2, 2> unit;
     unit[0][0] = -1. / layer.thickness; // one newton a metre of compression
     geometric_.reinit(solid_.stiffness());
@@ -170,6 +174,53 @@ TEST(Buckling, StripOnStiffSpringsTakesTheFifthMode)
 TEST(Buckling, LongStripOnSpringsTakesTheFifthMode)
 {
   expect_winkler_mode(3., 1e3, 5, 63.8912);
+}
+
+namespace
+{
+/// Least force of a layer of D = 1 with m half waves in its length, on springs k_w = 4
+/// and a shear layer G_p = 3, for k = sqrt(2) = (k_w / D)^(1/4): 2 sqrt(k_w D) + G_p = 7.
+/// \param slenderness k h
+double force_on_a_shear_layer(const double slenderness,
+                              const unsigned int m,
+                              const unsigned int columns_per_half_wave)
+{
+  const double k = std::sqrt(2.);
+  const SpringStrip strip(unit_layer(slenderness / k), m * M_PI / k,
+                          m * columns_per_half_wave, 4., Ends::pinned, 3.);
+  return strip.buckling_force(m, 0.3 * 7., 0.6 * 7.);
+}
+} // namespace
+
+TEST(Buckling, StripOnAShearLayerBucklesAtTheWinklerForceAndItsStiffness)
+{
+  const double found = force_on_a_shear_layer(0.0125, 4, 48);
+  // Pinned modes D k^2 + k_w / k^2 + G_p; the shear layer adds its stiffness, 43 % here,
+  // whatever the wave. Shear and turning sections take 2e-5.
+  EXPECT_NEAR(found, 2. * std::sqrt(4.) + 3., 1e-3 * 7.);
+  const SpringStrip longer(unit_layer(0.0125), 10., 240, 4., Ends::pinned, 3.);
+  for (const unsigned int m : {2u, 5u, 8u})
+  {
+    const double k = m * M_PI / 10., mode = k * k + 4. / (k * k) + 3.;
+    EXPECT_NEAR(longer.buckling_force(m, 0.3 * mode, 0.6 * mode), mode, 1e-3 * mode);
+  }
+}
+
+TEST(Buckling, ForcesOnAShearLayerConvergeAtFourthOrder)
+{
+  std::vector<double> forces;
+  for (const unsigned int n : {8, 16, 32, 64})
+    forces.push_back(force_on_a_shear_layer(0.2, 1, n));
+  // Q2 in bending, from above. Cells of 1.4 to 0.2 times their height: the order rises to
+  // 4 as they become short.
+  const auto order = [&](const unsigned int k)
+  { return std::log2((forces[k] - forces[k + 1]) / (forces[k + 1] - forces[k + 2])); };
+  EXPECT_NEAR(order(0), 3.7, 0.2);
+  EXPECT_NEAR(order(1), 3.9, 0.15);
+  // With x = (k h)^2 shear lowers the bending force 2 by 0.2 x and the turning of the
+  // sections under N all of it by x / 12; what is left is of order x^2, 2e-3 of 2.
+  const double x = 0.04, expected = (2. / (1. + 0.2 * x) + 2. + 3.) / (1. + x / 12.);
+  EXPECT_NEAR(forces[3], expected, 5e-4);
 }
 
 TEST(Buckling, LongStripWithFreeEndsBucklesAtHalfTheForce)
