@@ -162,7 +162,7 @@ void ArcLength::follow(Vector &displacement,
                        const Measure &measure,
                        const double target)
 {
-  displacement.update_ghost_values(); // a copied vector has none
+  body_.solid().make_continuous(displacement); // a copied vector has no ghosts
   double rest = measure(displacement, factor) - target;
   const double close = options_.stop_tolerance * std::abs(rest);
   if (path_.empty())

@@ -1,5 +1,7 @@
 #include "continuum/displacement_space.h"
 
+#include "continuum/hanging_nodes.h"
+
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
@@ -51,6 +53,21 @@ void DisplacementSpace::make_dofs()
         support_points_[local] = places.quadrature_point(i);
       }
     }
+
+  if (!dof_handler_.get_triangulation().has_hanging_nodes())
+    return;
+  // Strips of different levels that only lie on one another have none all the same.
+  auto hanging = std::make_shared<HangingNodes>(*this);
+  if (hanging->n_dofs() > 0)
+    hanging_nodes_ = std::move(hanging);
+}
+
+void DisplacementSpace::make_continuous(Vector &displacement) const
+{
+  if (hanging_nodes_)
+    hanging_nodes_->put_on_edges(displacement);
+  else
+    displacement.update_ghost_values();
 }
 
 unsigned int DisplacementSpace::component(const types::global_dof_index dof) const

@@ -28,9 +28,12 @@ struct PointEvaluation
   std::vector<double> value; ///< N_k(point) [-]
 };
 
+class HangingNodes;
+
 /// The displacements of a body: two a node of Q1 or Q2 cells, their numbers, places and
 /// vectors, whatever the material. Carries the body's share w_C(x) in a bridging domain.
-/// Runs on any number of ranks; on one rank a dof's local index is its global one.
+/// Runs on any number of ranks; on one rank a dof's local index is its global one. A mesh
+/// that is refined afterwards needs a new space.
 class DisplacementSpace
 {
 public:
@@ -60,9 +63,15 @@ public:
   /// Whether the point lies in a cell that this rank knows.
   bool contains(const dealii::Point<2> &point) const { return locator_.contains(point); }
 
+  /// Nodes on the edges of larger cells; null on a mesh without any.
+  const HangingNodes *hanging_nodes() const { return hanging_nodes_.get(); }
+  /// Set ghosts, and put hanging nodes on their edges. Collective.
+  void make_continuous(Vector &displacement) const;
+
   /// A ghosted vector of this body's dofs, zero.
   Vector make_vector() const { return Vector(partitioner_); }
-  /// A system matrix, zero, in which the dofs of each cell are coupled. Collective.
+  /// A system matrix, zero, in which the dofs of each cell are coupled, hanging ones as
+  /// if they were free. Collective.
   dealii::TrilinosWrappers::SparseMatrix make_matrix() const;
 
   const dealii::IndexSet &locally_owned() const { return locally_owned_; }
@@ -81,5 +90,6 @@ private:
   std::vector<unsigned char> components_;        ///< per local dof, ghosts after owned
   std::vector<dealii::Point<2>> support_points_; ///< per local dof, ghosts after owned
   PointLocator locator_;
+  std::shared_ptr<const HangingNodes> hanging_nodes_;
 };
 } // namespace antiform::continuum

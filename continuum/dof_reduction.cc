@@ -1,6 +1,7 @@
 #include "continuum/dof_reduction.h"
 
 #include "continuum/direct_solver.h"
+#include "continuum/hanging_nodes.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
@@ -49,16 +50,25 @@ void refuse_if(const bool wrong, const MPI_Comm communicator, const char *text)
 }
 } // namespace
 
-DofReduction::DofReduction(const ElasticSolid &solid,
+DofReduction::DofReduction(const DisplacementSpace &space,
                            const DirichletValues &values,
                            const std::vector<Tie> &ties)
-    : solid_(solid)
-    , prescribed_(solid.make_vector())
+    : space_(space)
+    , prescribed_(space.make_vector())
 {
-  const MPI_Comm communicator = solid.dof_handler().get_communicator();
-  const IndexSet &dofs = solid.locally_owned();
+  const MPI_Comm communicator = space.dof_handler().get_communicator();
+  const IndexSet &dofs = space.locally_owned();
+  const HangingNodes *const hanging = space.hanging_nodes();
+  const auto hangs = [hanging](const GlobalDof dof)
+  { return hanging != nullptr && hanging->contains(dof); };
   std::map<GlobalDof, const Tie *> tied;
   bool wrong = false;
+  for (const auto &[dof, value] : values)
+    wrong |= hangs(dof);
+  for (const Tie &tie : ties)
+    wrong |= hangs(tie.dof);
+  refuse_if(wrong, communicator,
+            "a dof that is prescribed or tied hangs on the edge of a larger cell.");
   for (const Tie &tie : ties)
   {
     wrong |= !dofs.is_element(tie.dof) || values.count(tie.dof) != 0 ||
@@ -71,7 +81,7 @@ DofReduction::DofReduction(const ElasticSolid &solid,
   std::map<GlobalDof, GlobalDof> unknown;
   GlobalDof n_own = 0;
   for (const GlobalDof dof : dofs)
-    if (values.count(dof) == 0 && tied.count(dof) == 0)
+    if (values.count(dof) == 0 && tied.count(dof) == 0 && !hangs(dof))
       unknown[dof] = n_own++;
   const auto counts = Utilities::MPI::all_gather(communicator, n_own);
   GlobalDof first = 0, n_all = 0;
@@ -97,12 +107,12 @@ DofReduction::DofReduction(const ElasticSolid &solid,
   for (const GlobalDof dof : wanted)
     if (dofs.is_element(dof))
     {
-      wrong |= tied.count(dof) != 0;
+      wrong |= tied.count(dof) != 0 || hangs(dof);
       const auto value = values.find(dof);
       told.push_back({dof, value == values.end() ? first + unknown[dof] : none,
                       value == values.end() ? 0. : value->second});
     }
-  refuse_if(wrong, communicator, "a master of a tie is tied itself.");
+  refuse_if(wrong, communicator, "a master of a tie is tied itself or hangs.");
   std::map<GlobalDof, Master> masters;
   for (const Master &master : gathered(told, communicator))
     masters.emplace(master.dof, master);
@@ -128,10 +138,10 @@ DofReduction::DofReduction(const ElasticSolid &solid,
     }
     else if (const auto value = values.find(dof); value != values.end())
       prescribed_(dof) = value->second;
-    else
+    else if (!hangs(dof))
       entries.push_back({dof, first + unknown[dof], 1.});
   }
-  TrilinosWrappers::SparsityPattern pattern(dofs, owned_, communicator, 4);
+  TrilinosWrappers::SparsityPattern pattern(dofs, owned_, communicator);
   for (const Entry &entry : entries)
     pattern.add(entry.row, entry.column);
   pattern.compress();
@@ -139,7 +149,12 @@ DofReduction::DofReduction(const ElasticSolid &solid,
   for (const Entry &entry : entries)
     map_.add(entry.row, entry.column, entry.value);
   map_.compress(VectorOperation::add);
-  prescribed_.update_ghost_values();
+  if (hanging != nullptr)
+  {
+    const TrilinosWrappers::SparseMatrix of_edges(std::move(map_));
+    hanging->map().mmult(map_, of_edges);
+  }
+  space.make_continuous(prescribed_);
 }
 
 TrilinosWrappers::SparseMatrix
@@ -161,7 +176,7 @@ Vector DofReduction::reduce(const Vector &force) const
 
 Vector DofReduction::expand(const Vector &unknowns, const bool homogeneous) const
 {
-  Vector displacement = solid_.make_vector();
+  Vector displacement = space_.make_vector();
   map_.vmult(displacement, unknowns);
   if (!homogeneous)
     for (unsigned int i = 0; i < displacement.locally_owned_size(); ++i)

@@ -16,17 +16,19 @@ struct Tie
 };
 
 /// The displacements of a body as a linear map of fewer unknowns, u = T q + u0: of
-/// prescribed dofs u0 is the value, tied ones follow their masters, each other dof is one
-/// q. A form u.K u becomes q.(T^T K T) q, symmetric where K is.
+/// prescribed dofs u0 is the value, tied ones follow their masters, hanging nodes the edge
+/// they lie on, each other dof is one q. A form u.K u becomes q.(T^T K T) q, symmetric
+/// where K is.
 class DofReduction
 {
 public:
   /// \param values prescribed displacements, as for StaticSolver: each by the rank that
   ///               owns the dof at least
   /// \param ties   each on the rank that owns the tied dof; masters anywhere. A tied dof
-  ///               must not be prescribed, nor a master of another tie
+  ///               must not be prescribed, nor a master of another tie. None of these
+  ///               dofs may hang; edges that others hang on may be tied and prescribed
   /// Throws std::invalid_argument on all ranks. Collective.
-  DofReduction(const ElasticSolid &solid,
+  DofReduction(const DisplacementSpace &space,
                const DirichletValues &values,
                const std::vector<Tie> &ties);
 
@@ -34,7 +36,7 @@ public:
   const dealii::IndexSet &locally_owned() const { return owned_; }
   Vector make_vector() const
   {
-    return Vector(owned_, solid_.dof_handler().get_communicator());
+    return Vector(owned_, space_.dof_handler().get_communicator());
   }
 
   /// T^T A T [as A].
@@ -48,7 +50,7 @@ public:
   const Vector &prescribed() const { return prescribed_; }
 
 private:
-  const ElasticSolid &solid_;
+  const DisplacementSpace &space_;
   dealii::IndexSet owned_;
   dealii::TrilinosWrappers::SparseMatrix map_; ///< T
   Vector prescribed_;

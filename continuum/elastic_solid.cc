@@ -1,5 +1,7 @@
 #include "continuum/elastic_solid.h"
 
+#include "continuum/hanging_nodes.h"
+
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -186,6 +188,16 @@ TrilinosMatrix ElasticSolid::geometric_stiffness(const Vector &displacement) con
         stress[0][1] = s[2];
         return stress;
       });
+}
+
+const Vector &ElasticSolid::lumped_mass() const
+{
+  if (hanging_nodes() != nullptr)
+    throw std::invalid_argument(
+        "elastic solid: " + std::to_string(hanging_nodes()->n_dofs()) +
+        " dofs hang on edges of larger cells and have no lumped mass; motion in time "
+        "needs a mesh that is refined evenly.");
+  return lumped_mass_;
 }
 
 void ElasticSolid::assemble_mass()

@@ -53,10 +53,12 @@ public:
   dealii::TrilinosWrappers::SparseMatrix
   geometric_stiffness(const Vector &displacement) const;
   /// Lumped mass (Gauss-Lobatto points, so positive for Q2 too), weighted: w_C rho [kg].
-  const Vector &lumped_mass() const { return lumped_mass_; }
+  /// Throws std::invalid_argument on a mesh with hanging nodes, which have no mass of
+  /// their own: motion in time is for meshes without.
+  const Vector &lumped_mass() const;
 
-  /// Add -K u to @p force (owned entries). @p displacement must have its ghosts set. Uses
-  /// OpenMP; each row is summed in a fixed order.
+  /// Add -K u to @p force (owned entries), also of hanging nodes. @p displacement must
+  /// have its ghosts set. Uses OpenMP; each row is summed in a fixed order.
   void add_internal_force(const Vector &displacement, Vector &force) const;
   /// Add to K and to the rows of add_internal_force() a spring on a boundary: foundation.
   void add_to_stiffness(const dealii::TrilinosWrappers::SparseMatrix &matrix);

@@ -1,6 +1,7 @@
 #include "continuum/loaded_solid.h"
 
 #include "continuum/errors.h"
+#include "continuum/hanging_nodes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +36,12 @@ bool LoadedSolid::has_symmetric_tangent() const
          solid_.has_symmetric_tangent();
 }
 
+void LoadedSolid::give_to_masters(Vector &force) const
+{
+  if (solid_.hanging_nodes() != nullptr)
+    solid_.hanging_nodes()->move_to_masters(force);
+}
+
 void LoadedSolid::add_loads(const Vector &displacement,
                             const double factor,
                             Vector &force,
@@ -61,6 +68,8 @@ void LoadedSolid::assemble(const Vector &displacement,
   solid_.assemble(displacement, time_step, internal_force_, tangent);
   load_ = 0.;
   add_loads(displacement, factor, load_, tangent);
+  give_to_masters(internal_force_);
+  give_to_masters(load_);
 
   residual_ = load_;
   residual_.add(-1., internal_force_);
@@ -90,6 +99,7 @@ Vector LoadedSolid::load_rate(const Vector &displacement) const
   rate.compress(VectorOperation::add);
   if (growing_.dead)
     rate.add(1., *growing_.dead);
+  give_to_masters(rate);
   return rate;
 }
 

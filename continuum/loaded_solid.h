@@ -38,7 +38,8 @@ public:
                 double time_step,
                 dealii::TrilinosWrappers::SparseMatrix *tangent);
 
-  /// Load less internal force, of the last assemble() [N]; 0 where prescribed.
+  /// Load less internal force, of the last assemble() [N]; 0 where prescribed. Forces of
+  /// hanging nodes, all that follow too, are with the nodes of their edges.
   const Vector &residual() const { return residual_; }
   /// The forces with which supports hold the body there [N]; 0 elsewhere.
   const Vector &reactions() const { return reactions_; }
@@ -53,6 +54,7 @@ public:
   const DirichletValues &displacement_rates() const { return rates_; }
 
 private:
+  void give_to_masters(Vector &force) const;
   void add_loads(const Vector &displacement,
                  double factor,
                  Vector &force,

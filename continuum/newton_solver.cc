@@ -96,7 +96,7 @@ void NewtonSolver::solve(const double factor,
                          Vector &displacement)
 {
   Convergence convergence(options_.convergence);
-  displacement.update_ghost_values(); // a copied vector has none
+  body_.solid().make_continuous(displacement); // a copied vector has no ghosts
   body_.assemble(displacement, factor, time_step, &tangent_);
   convergence.is_reached(body_, tangent_, displacement); // before the prediction
   Vector u = moved(displacement, 1., direction(displacement, factor));

@@ -37,7 +37,8 @@ public:
   /// gradients are asked for and a tangent may be unsymmetric.
   NewtonSolver(LoadedSolid &body, const Options &options);
 
-  /// One step from an equilibrium at @p displacement to that at @p factor,
+  /// One step from an equilibrium at @p displacement, whose hanging nodes are put on
+  /// their edges, to that at @p factor,
   /// in @p time_step [s]; the body's history is accepted. Throws NumericalError on all
   /// ranks where none is found; displacement and history are then as before.
   void solve(double factor, double time_step, Vector &displacement);

@@ -1,11 +1,15 @@
 #include "continuum/static_solver.h"
 
+#include "continuum/hanging_nodes.h"
+
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/solver_cg.h>
 
 #include <Epetra_CrsMatrix.h>
+#include <Epetra_Import.h>
 #include <Epetra_Map.h>
+#include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,8 +92,11 @@ StaticSolver::StaticSolver(const DisplacementSpace &solid,
     : solid_(solid)
     , matrix_(matrix)
     , options_(options)
-    , values_(spread(solid, values))
+    , values_(spread_values(values))
 {
+  if (solid.hanging_nodes() != nullptr)
+    continuous_ = std::make_unique<TrilinosWrappers::SparseMatrix>(
+        solid.hanging_nodes()->reduce(matrix));
   const unsigned int n_local =
       values_.locally_owned_size() + values_.get_partitioner()->n_ghost_indices();
   prescribed_.resize(n_local);
@@ -117,9 +124,29 @@ StaticSolver::StaticSolver(const DisplacementSpace &solid,
   preconditioner_->initialize(reduced_, settings);
 }
 
+/// As spread(), with 0 for hanging dofs.
+Vector StaticSolver::spread_values(const DirichletValues &values) const
+{
+  Vector result = spread(solid_, values);
+  if (solid_.hanging_nodes() == nullptr)
+    return result;
+  unsigned int n_wrong = 0;
+  for (const auto dof : solid_.hanging_nodes()->dofs())
+  {
+    double &value = result.local_element(result.get_partitioner()->global_to_local(dof));
+    n_wrong += value != unset;
+    value = 0.;
+  }
+  if (Utilities::MPI::max(n_wrong, solid_.dof_handler().get_communicator()) > 0)
+    throw std::invalid_argument(
+        "static solver: a displacement is prescribed at a node that hangs on the edge of "
+        "a larger cell; prescribe those of the edge.");
+  return result;
+}
+
 void StaticSolver::set_values(const DirichletValues &values)
 {
-  Vector fresh = spread(solid_, values);
+  Vector fresh = spread_values(values);
   unsigned int n_wrong = 0;
   for (unsigned int i = 0; i < prescribed_.size(); ++i)
   {
@@ -140,9 +167,13 @@ void StaticSolver::set_values(const DirichletValues &values)
 /// keeps the symmetry and the scale of the matrix.
 void StaticSolver::eliminate_prescribed()
 {
-  reduced_.copy_from(matrix_);
+  reduced_.copy_from(system());
   const Epetra_CrsMatrix &matrix = reduced_.trilinos_matrix();
-  const auto &partitioner = *values_.get_partitioner();
+  // Columns may be of dofs beyond the ghosts: a hanging node's masters.
+  Epetra_Vector own(matrix.DomainMap()), is_prescribed(matrix.ColMap());
+  for (int i = 0; i < own.MyLength(); ++i)
+    own[i] = prescribed_[i];
+  is_prescribed.Import(own, Epetra_Import(matrix.ColMap(), matrix.DomainMap()), Insert);
   for (int row = 0; row < matrix.NumMyRows(); ++row)
   {
     int n = 0, *columns = nullptr;
@@ -151,10 +182,8 @@ void StaticSolver::eliminate_prescribed()
     double sum = 0.;
     for (int k = 0; k < n; ++k)
     {
-      const types::global_dof_index dof = matrix.ColMap().GID(columns[k]);
-      const unsigned int column = partitioner.global_to_local(dof);
-      if ((prescribed_[row] || prescribed_[column]) &&
-          column != static_cast<unsigned int>(row))
+      if ((prescribed_[row] || is_prescribed[columns[k]] != 0.) &&
+          matrix.GCID(columns[k]) != matrix.GRID(row))
         entries[k] = 0.;
       sum += std::abs(entries[k]);
     }
@@ -166,8 +195,15 @@ void StaticSolver::eliminate_prescribed()
 unsigned int StaticSolver::solve(const Vector &force, Vector &displacement) const
 {
   Vector rhs = solid_.make_vector();
-  matrix_.vmult(rhs, values_);
-  rhs.sadd(-1., 1., force);
+  system().vmult(rhs, values_);
+  if (continuous_)
+  {
+    Vector of_masters = force;
+    solid_.hanging_nodes()->move_to_masters(of_masters);
+    rhs.sadd(-1., 1., of_masters);
+  }
+  else
+    rhs.sadd(-1., 1., force);
   for (unsigned int i = 0; i < rhs.locally_owned_size(); ++i)
     if (prescribed_[i])
     {
@@ -183,7 +219,7 @@ unsigned int StaticSolver::solve(const Vector &force, Vector &displacement) cons
   else
     iterations = iterate(rhs, displacement);
   verify(rhs, displacement);
-  displacement.update_ghost_values();
+  solid_.make_continuous(displacement);
   return iterations;
 }
 

@@ -31,7 +31,8 @@ void prescribe(const DisplacementSpace &solid,
 DirichletValues complete(const DisplacementSpace &solid, const DirichletValues &values);
 
 /// Solves K u = f with prescribed displacements, for a matrix that does not change while
-/// the loads do: preconditioner or factor are made once.
+/// the loads do: preconditioner or factor are made once. Hanging nodes follow their
+/// edges, and their loads go to the nodes of these.
 class StaticSolver
 {
 public:
@@ -50,7 +51,8 @@ public:
   };
 
   /// Takes the whole system matrix, with foundation and geometric stiffness; a reference
-  /// to it is kept. Collective, as all that follows.
+  /// to it is kept. Throws std::invalid_argument, on all ranks, where a hanging node is
+  /// prescribed. Collective, as all that follows.
   StaticSolver(const DisplacementSpace &solid,
                const dealii::TrilinosWrappers::SparseMatrix &matrix,
                const DirichletValues &values,
@@ -69,6 +71,11 @@ public:
   unsigned int solve(const Vector &force, Vector &displacement) const;
 
 private:
+  Vector spread_values(const DirichletValues &values) const;
+  const dealii::TrilinosWrappers::SparseMatrix &system() const
+  {
+    return continuous_ ? *continuous_ : matrix_;
+  }
   void eliminate_prescribed();
   unsigned int iterate(const Vector &rhs, Vector &displacement) const;
   void verify(const Vector &rhs, const Vector &displacement) const;
@@ -76,6 +83,8 @@ private:
   const DisplacementSpace &solid_;
   const dealii::TrilinosWrappers::SparseMatrix &matrix_;
   Options options_;
+  /// C^T K C (HangingNodes), whose hanging dofs are prescribed 0; null without any.
+  std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> continuous_;
   Vector values_;                         ///< prescribed displacement, 0 elsewhere
   std::vector<unsigned char> prescribed_; ///< per local dof, ghosts after owned
   dealii::TrilinosWrappers::SparseMatrix reduced_;
