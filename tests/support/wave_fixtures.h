@@ -1,5 +1,5 @@
 #pragma once
-// Elastic bodies that carry waves through the program's loop, undamped but for dashpots.
+// Elastic bodies that carry waves through the program's loop.
 #include "coupling/absorbing_component.h"
 #include "support/coupling_fixtures.h"
 #include "support/solid_fixtures.h"
@@ -55,12 +55,22 @@ public:
     mesh_->velocity = interpolate(*solid_, velocity);
   }
 
-  /// The loop, with dashpots on @p absorbing faces. Prescribe dofs before.
-  Simulation &make_loop(const double dt, const continuum::BoundaryIds &absorbing)
+  /// The loop, with dashpots on @p absorbing faces and local damping. Prescribe dofs
+  /// before.
+  Simulation &make_loop(const double dt,
+                        const continuum::BoundaryIds &absorbing,
+                        const double damping = 0.)
   {
     simulation_ = std::make_unique<Simulation>(dt);
-    simulation_->add(std::make_unique<MeshMotion>(*mesh_, walls),
-                     {Stage::forces, Stage::kick, Stage::drift}, 5, "mesh", "test");
+    auto &motion =
+        simulation_->add(std::make_unique<MeshMotion>(*mesh_, walls),
+                         {Stage::forces, Stage::kick, Stage::drift}, 5, "mesh", "test");
+    if (damping > 0.)
+      motion.damping =
+          simulation_
+              ->add(std::make_unique<LocalDamping>(nullptr, mesh_.get(), damping),
+                    {Stage::damp, Stage::kick}, 50, "damping", "test")
+              .mesh_forces();
     if (!walls.empty())
       simulation_->add(std::make_unique<Walls>(walls, nullptr, mesh_.get(), nullptr,
                                                [](double) { return 1.; }),
