@@ -8,9 +8,17 @@
 
 namespace antiform::testing
 {
-using namespace antiform::coupling;
 using continuum::ElasticMaterial;
 using continuum::ElasticSolid;
+using coupling::AbsorbingBoundary;
+using coupling::Clock;
+using coupling::Energies;
+using coupling::LocalDamping;
+using coupling::MeshMotion;
+using coupling::MeshState;
+using coupling::Simulation;
+using coupling::Stage;
+using coupling::Walls;
 namespace boundary = continuum::boundary;
 
 /// A mesh, its motion, and dashpots where a test asks for them.

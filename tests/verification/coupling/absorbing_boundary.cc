@@ -7,6 +7,8 @@
 
 namespace antiform::testing
 {
+using namespace coupling;
+
 namespace
 {
 /// rho = 1 and c_p = 1: rho c_p^2 = E (1 - nu) / ((1 + nu)(1 - 2 nu)).
