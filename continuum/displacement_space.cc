@@ -2,12 +2,16 @@
 
 #include "continuum/hanging_nodes.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <algorithm>
+#include <array>
 
 namespace antiform::continuum
 {
@@ -70,6 +74,61 @@ void DisplacementSpace::make_continuous(Vector &displacement) const
     displacement.update_ghost_values();
 }
 
+void DisplacementSpace::couple(const std::vector<DofGroup> &groups)
+{
+  const MPI_Comm communicator = dof_handler_.get_communicator();
+  const auto of_ranks = Utilities::MPI::all_gather(communicator, groups);
+  const unsigned int own = Utilities::MPI::this_mpi_process(communicator);
+  bool any = false;
+  for (unsigned int rank = 0; rank < of_ranks.size(); ++rank)
+    for (const DofGroup &group : of_ranks[rank])
+    {
+      any = true;
+      const bool is_of_here = std::any_of(group.begin(), group.end(),
+                                          [&](const types::global_dof_index dof)
+                                          { return locally_owned_.is_element(dof); });
+      if (rank == own || is_of_here)
+        for (const types::global_dof_index dof : group)
+          locally_relevant_.add_index(dof);
+    }
+  if (!any)
+    return;
+  couplings_.insert(couplings_.end(), groups.begin(), groups.end());
+  know_places();
+  if (hanging_nodes_) // they know dofs by their places in vectors
+    hanging_nodes_ = std::make_shared<HangingNodes>(*this);
+}
+
+/// Vectors of what is relevant now; components and places of all that they know.
+void DisplacementSpace::know_places()
+{
+  locally_relevant_.compress();
+  const auto former = partitioner_;
+  partitioner_ = std::make_shared<Utilities::MPI::Partitioner>(
+      locally_owned_, locally_relevant_, dof_handler_.get_communicator());
+  const unsigned int n_owned = former->locally_owned_size();
+  std::array<Vector, 3> of_nodes; // component, x, y
+  for (Vector &vector : of_nodes)
+    vector.reinit(partitioner_);
+  for (unsigned int i = 0; i < n_owned; ++i)
+  {
+    of_nodes[0].local_element(i) = components_[i];
+    for (unsigned int c = 0; c < 2; ++c)
+      of_nodes[1 + c].local_element(i) = support_points_[i][c];
+  }
+  for (Vector &vector : of_nodes)
+    vector.update_ghost_values();
+  const unsigned int n_local = n_owned + partitioner_->n_ghost_indices();
+  components_.resize(n_local);
+  support_points_.resize(n_local);
+  for (unsigned int i = n_owned; i < n_local; ++i)
+  {
+    components_[i] = of_nodes[0].local_element(i) > 0.5 ? 1 : 0;
+    support_points_[i] =
+        Point<2>(of_nodes[1].local_element(i), of_nodes[2].local_element(i));
+  }
+}
+
 unsigned int DisplacementSpace::component(const types::global_dof_index dof) const
 {
   return components_[partitioner_->global_to_local(dof)];
@@ -122,6 +181,9 @@ TrilinosWrappers::SparseMatrix DisplacementSpace::make_matrix() const
   DoFTools::make_sparsity_pattern(
       dof_handler_, pattern, AffineConstraints<double>(), true,
       dof_handler_.get_triangulation().locally_owned_subdomain());
+  for (const DofGroup &group : couplings_)
+    for (const types::global_dof_index row : group)
+      pattern.add_entries(row, group.begin(), group.end());
   pattern.compress();
   TrilinosWrappers::SparseMatrix matrix;
   matrix.reinit(pattern);

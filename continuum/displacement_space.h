@@ -20,6 +20,9 @@ namespace antiform::continuum
 {
 using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
 
+/// Dofs of which each is coupled with each, by something else than a cell.
+using DofGroup = std::vector<dealii::types::global_dof_index>;
+
 /// Shape functions at a point: the field there is sum_k value[k] u[dof_x[k]], and with
 /// dof_y its y component.
 struct PointEvaluation
@@ -70,16 +73,23 @@ public:
 
   /// A ghosted vector of this body's dofs, zero.
   Vector make_vector() const { return Vector(partitioner_); }
-  /// A system matrix, zero, in which the dofs of each cell are coupled, hanging ones as
-  /// if they were free. Collective.
+  /// A system matrix, zero, in which the dofs of each cell and those of each group are
+  /// coupled, hanging ones as if they were free. Collective.
   dealii::TrilinosWrappers::SparseMatrix make_matrix() const;
 
   const dealii::IndexSet &locally_owned() const { return locally_owned_; }
   const dealii::IndexSet &locally_relevant() const { return locally_relevant_; }
   const dealii::Utilities::MPI::Partitioner &partitioner() const { return *partitioner_; }
 
+protected:
+  /// Let matrices couple the dofs of each of this rank's @p groups, and vectors know them
+  /// here and where one of a group is owned. Vectors and matrices made before are not of
+  /// this space any more, unless no rank has a group. Collective.
+  void couple(const std::vector<DofGroup> &groups);
+
 private:
   void make_dofs();
+  void know_places();
 
   dealii::FESystem<2> fe_;
   dealii::DoFHandler<2> dof_handler_;
@@ -91,5 +101,6 @@ private:
   std::vector<dealii::Point<2>> support_points_; ///< per local dof, ghosts after owned
   PointLocator locator_;
   std::shared_ptr<const HangingNodes> hanging_nodes_;
+  std::vector<DofGroup> couplings_; ///< of this rank, beyond its cells
 };
 } // namespace antiform::continuum

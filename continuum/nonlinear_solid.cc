@@ -304,7 +304,23 @@ bool NonlinearSolid::has_symmetric_tangent() const
   for (const auto &law : laws_)
     if (!law->has_symmetric_tangent())
       return false;
+  for (const auto &force : surface_forces_)
+    if (!force->has_symmetric_tangent())
+      return false;
   return true;
+}
+
+void NonlinearSolid::add(std::shared_ptr<SurfaceForce> force)
+{
+  couple(force->couplings());
+  surface_forces_.push_back(std::move(force));
+}
+
+void NonlinearSolid::accept()
+{
+  history_ = next_history_;
+  for (const auto &force : surface_forces_)
+    force->accept();
 }
 
 void NonlinearSolid::add_springs(const TrilinosMatrix &springs)
@@ -323,6 +339,10 @@ void NonlinearSolid::assemble(const Vector &displacement,
                               Vector &internal_force,
                               TrilinosMatrix *tangent)
 {
+  if (!surface_forces_.empty() &&
+      !partitioner().is_globally_compatible(*displacement.get_partitioner()))
+    throw std::invalid_argument("solid: the displacement was made before a surface force "
+                                "was added; add it first.");
   CellLoop loop(*this, displacement);
   const unsigned int n = loop.n;
   FullMatrix<double> K(n, n);
@@ -372,6 +392,8 @@ void NonlinearSolid::assemble(const Vector &displacement,
       tangent->add(loop.dofs, K);
   };
   loop.run(begin_cell, at_point, end_cell);
+  for (const auto &force : surface_forces_)
+    force->add(displacement, internal_force, tangent);
   internal_force.compress(VectorOperation::add);
   if (tangent)
     tangent->compress(VectorOperation::add);

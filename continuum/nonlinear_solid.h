@@ -2,6 +2,7 @@
 
 #include "continuum/displacement_space.h"
 #include "continuum/material_law.h"
+#include "continuum/surface_force.h"
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/types.h>
@@ -57,6 +58,11 @@ public:
 
   /// Add linear springs to the body, of the form of make_matrix() [N/m]: a foundation.
   void add_springs(const dealii::TrilinosWrappers::SparseMatrix &springs);
+  /// Add forces on the surface: a base that does not pull, the touch of strips. Before
+  /// vectors and matrices of the body are made, and what holds some (LoadedSolid,
+  /// NewtonSolver): assemble() throws std::invalid_argument for a displacement that does
+  /// not know the dofs in touch.
+  void add(std::shared_ptr<SurfaceForce> force);
 
   /// \param displacement   at the end of the step, ghosts set [m]
   /// \param time_step      [s]; 0 in problems without time
@@ -71,10 +77,11 @@ public:
                 Vector &internal_force,
                 dealii::TrilinosWrappers::SparseMatrix *tangent);
   /// The step that was assembled last is done: its history is where the next begins.
-  void accept() { history_ = next_history_; }
+  void accept();
 
   /// Numbers that the quadrature points of this rank remember from the last accepted
-  /// step, cell by cell and point by point: what a checkpoint must hold.
+  /// step, cell by cell and point by point: what a checkpoint must hold, with the
+  /// histories of surface forces.
   std::vector<double> &history() { return history_; }
 
   struct PointState
@@ -108,5 +115,6 @@ private:
   std::vector<std::size_t> history_start_;
   std::vector<double> history_, next_history_;
   std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> springs_;
+  std::vector<std::shared_ptr<SurfaceForce>> surface_forces_;
 };
 } // namespace antiform::continuum
