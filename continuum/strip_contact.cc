@@ -257,7 +257,7 @@ void StripContact::lay_out_points(const Options &options)
 {
   const unsigned int degree = space_.degree();
   const QGauss<1> points(options.points_per_face > 0 ? options.points_per_face
-                                                     : degree + 1);
+                                                     : degree + 3);
   const FE_Q<1> fe(degree);
   // deal.II lists the end nodes first; here they go along.
   std::vector<unsigned int> order{0};

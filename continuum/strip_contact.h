@@ -30,7 +30,10 @@ public:
     Traction initial_traction;
     /// Whether the pair of faces with this middle is of this contact; empty: all are.
     std::function<bool(const dealii::Point<2> &)> is_included;
-    unsigned int points_per_face = 0; ///< Gauss points; 0: degree + 1
+    /// Gauss points of a face, each open or closed by itself; 0: degree + 3. Degree + 1
+    /// are exact where all of a face is closed; more let Newton's method find faster what
+    /// is.
+    unsigned int points_per_face = 0;
   };
 
   /// The space must outlive the contact; add it to the body (NonlinearSolid::add()).

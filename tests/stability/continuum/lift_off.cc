@@ -1,11 +1,9 @@
-// A strip that lies on a base which does not pull, is lifted and pressed and put down.
-#include "continuum/newton_solver.h"
+// A strip that lies on a base which does not pull, or on another one, is lifted and
+// pressed and put down.
 #include "continuum/unilateral_foundation.h"
-#include "support/nonlinear_fixtures.h"
+#include "support/two_strips.h"
 
 #include <gtest/gtest.h>
-
-#include <stdexcept>
 
 using namespace antiform;
 using namespace antiform::continuum;
@@ -116,27 +114,62 @@ TEST(LiftOff, RanksDoNotChangeTheResult)
   EXPECT_NEAR(a.greatest_depth, b.greatest_depth, 1e-8 * b.greatest_depth);
 }
 
-TEST(LiftOff, BaseAtADistanceIsMetAndOneInTouchMayPressFromTheStart)
+TEST(LiftOff, StripLiftedFromAnotherOneLiesAgainAsItLay)
 {
-  Triangulation triangulation(MPI_COMM_WORLD);
-  make_rectangle(triangulation, length, thickness, 4, 1);
-  NonlinearSolid solid(triangulation, {make_law<StVenantKirchhoff>(1e10, 0.25)},
-                       NonlinearSolid::Options());
-  // Under the left half the base is 1 mm lower, the right half is pressed by 3 mm.
-  UnilateralFoundation::Options options;
-  options.gap = [](const Point<2> &p) { return p[0] < 0.5 * length ? 1e-3 : -3e-3; };
-  UnilateralFoundation base(solid, {boundary::bottom}, base_stiffness, options);
-  const auto force_at = [&](const double sinking)
+  TwoStrips form;
+  form.length = length;
+  form.height = thickness;
+  form.n_columns = 20;
+  form.n_rows = 1;
+  form.degree = 2;
+  form.law = make_law<StVenantKirchhoff>(1e10, 0.25);
+  const ContactSide side{LameConstants::from_young_poisson(1e10, 0.25), thickness};
+  TwoStripBody body(form, FrictionlessContact{contact_stiffness(side, side).normal});
+  NonlinearSolid &solid = body.solid();
+  Loads constant, growing;
+  constant.dead =
+      body_force(solid,
+                 [](const Point<2> &p) {
+                   return dealii::Tensor<1, 2>({0., p[1] > 0. ? -weight : 0.});
+                 });
+  for (unsigned int c = 0; c < 2; ++c)
+    prescribe(
+        solid, boundary::bottom, c, [](const Point<2> &) { return 0.; },
+        constant.displacements);
+  hold_node(solid, {0., thickness}, 0, constant.displacements);
+  growing.dead = boundary_traction(
+      solid, {boundary::right},
+      [](const Point<2> &p, const auto &) {
+        return dealii::Tensor<1, 2>({0., p[1] > 0. ? total / thickness : 0.});
+      });
+  LoadedSolid loaded(solid, constant, growing);
+  NewtonSolver::Options options;
+  options.convergence.tolerance = 1e-10;
+  NewtonSolver newton(loaded, options);
+  auto u = solid.make_vector();
+  newton.solve(0., 0., u);
+  const Vector before = u;
+
+  double factor = 0.;
+  for (const double next : {0.3, -1., 0.})
   {
-    return base
-        .support(interpolate(solid, [=](const Point<2> &, const unsigned int c)
-                             { return c == 1 ? -sinking : 0.; }))
-        .force;
-  };
-  const double of_half = base_stiffness * 0.5 * length;
-  EXPECT_NEAR(force_at(0.), 3e-3 * of_half, 1e-12 * of_half);
-  EXPECT_NEAR(force_at(2e-3), (5e-3 + 1e-3) * of_half, 1e-12 * of_half);
-  EXPECT_NEAR(force_at(-4e-3), 0., 0.);
-  EXPECT_THROW(UnilateralFoundation(solid, {boundary::bottom}, 0.),
-               std::invalid_argument);
+    newton.advance(factor, next, 4, u);
+    factor = next;
+    double carried = 0., open = 0.;
+    for (const auto &state : body.contact().point_states(u))
+    {
+      carried -= state.traction.normal * state.normal[1] * state.length;
+      open += state.phase == ContactPhase::open ? state.length : 0.;
+    }
+    carried = dealii::Utilities::MPI::sum(carried, MPI_COMM_WORLD);
+    open = dealii::Utilities::MPI::sum(open, MPI_COMM_WORLD);
+    EXPECT_NEAR(carried, (1. - factor) * total, 1e-8 * total); // Newton's tolerance
+    if (factor > 0.)
+    {
+      EXPECT_GT(open, factor * length);
+    }
+  }
+  auto change = u;
+  change -= before;
+  EXPECT_LT(largest(change), 1e-8 * largest(before));
 }

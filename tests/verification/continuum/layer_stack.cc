@@ -105,3 +105,41 @@ TEST(LayerStack, RanksDoNotChangeTheResult)
   const double one = deflection(law, MPI_COMM_SELF), all = deflection(law);
   EXPECT_NEAR(all, one, 1e-8 * one);
 }
+
+TEST(LayerStack, OfSlidingLayersBendsFarAsTheElastica)
+{
+  // P L^2 / D = 1 at the free end: deflection and shortening over L and slope of a
+  // cantilever (Mattiasson 1981), whose layers slip by their thickness times the slope.
+  constexpr double sag = 0.30172, shortening = 0.05643, slope = 0.46135;
+  TwoStrips slender = form;
+  slender.length = 40.;
+  slender.law = make_law<StVenantKirchhoff>(E, 0.);
+  const double L = slender.length, face = L / slender.n_columns;
+  TwoStripBody body(slender, SlidingContact{stiffness(100.).normal});
+  Loads growing;
+  growing.dead = boundary_traction(
+      body.solid(), {boundary::right},
+      [=](const Point<2> &, const auto &) {
+        return dealii::Tensor<1, 2>({0., -layer.bending_stiffness() / (L * L)});
+      });
+  for (unsigned int c = 0; c < 2; ++c)
+    prescribe(
+        body.solid(), boundary::left, c, [](const Point<2> &) { return 0.; },
+        growing.displacements);
+  LoadedSolid loaded(body.solid(), {}, growing);
+  NewtonSolver newton(loaded, NewtonSolver::Options());
+  auto u = body.solid().make_vector();
+  newton.advance(0., 1., 4, u);
+  const auto mean_of_axes = [&](const unsigned int component)
+  {
+    double sum = 0.;
+    for (const double y : {-0.5, 0.5})
+      sum += at_node(body.solid(), u, {L, y * layer.thickness}, component);
+    return 0.5 * sum;
+  };
+  // Shear and the layers' different radii make some (thickness / L)^2 = 6e-4.
+  EXPECT_NEAR(mean_of_axes(1), -sag * L, 1e-3 * sag * L);
+  EXPECT_NEAR(mean_of_axes(0), -shortening * L, 2e-3 * shortening * L);
+  EXPECT_NEAR(body.contact().relative_slip(u), slope * layer.thickness / face,
+              2e-3 * slope * layer.thickness / face);
+}

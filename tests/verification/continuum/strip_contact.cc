@@ -1,11 +1,14 @@
 // Strips that touch without being joined: what their interface carries, whatever the
 // rotation, and how the body around it answers.
+#include "continuum/foundation.h"
 #include "support/two_strips.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 using namespace antiform;
 using namespace antiform::continuum;
@@ -228,4 +231,47 @@ TEST(StripContact, TangentIsTheDerivativeOfTheForces)
       EXPECT_EQ(body.solid().has_symmetric_tangent(),
                 !std::holds_alternative<FrictionalContact>(state.law));
     }
+}
+
+TEST(StripContact, OfTwoHalvesAndOnSpringsIsThatOfTheWhole)
+{
+  // Parts of an interface may have their own laws; springs may have been made before the
+  // interface was known, with fewer entries.
+  TwoStrips form;
+  form.degree = 2;
+  form.law = make_law<LinearElastic>(1e3, 0.25);
+  form.dip = 0.2;
+  TwoStripBody whole(form, frictional);
+  TwoStrips left = form;
+  left.contact.is_included = [](const Point<2> &p) { return p[0] < 0.5; };
+  TwoStripBody halves(left, frictional);
+  StripContact::Options right;
+  right.is_included = [](const Point<2> &p) { return p[0] >= 0.5; };
+  halves.solid().add(
+      std::make_shared<StripContact>(halves.solid(), ContactLaw(frictional), right));
+  const auto &mesh = dynamic_cast<const Triangulation &>(
+      halves.solid().dof_handler().get_triangulation());
+  const DisplacementSpace untouched(mesh, form.degree);
+  halves.solid().add_springs(winkler_foundation(untouched, {boundary::bottom}, 1e3));
+  whole.solid().add_springs(winkler_foundation(whole.solid(), {boundary::bottom}, 1e3));
+
+  std::vector<Vector> results;
+  for (TwoStripBody *body : {&whole, &halves})
+  {
+    const auto u = bent_and_turned(*body, 0.05, -0.02, 0.3);
+    auto force = body->solid().make_vector(), Kf = force;
+    Matrix tangent = body->solid().make_matrix();
+    body->solid().assemble(u, 0., force, &tangent);
+    tangent.vmult(Kf, wavy_field(body->solid(), 1.));
+    results.push_back(force);
+    results.push_back(Kf);
+  }
+  for (const std::size_t i : {0, 1})
+  {
+    const double norm = results[i].l2_norm();
+    auto difference = results[i + 2];
+    difference -= results[i];
+    EXPECT_GT(norm, 1.);
+    EXPECT_LT(difference.l2_norm(), 1e-12 * norm);
+  }
 }
