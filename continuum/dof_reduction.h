@@ -16,9 +16,9 @@ struct Tie
 };
 
 /// The displacements of a body as a linear map of fewer unknowns, u = T q + u0: of
-/// prescribed dofs u0 is the value, tied ones follow their masters, hanging nodes the edge
-/// they lie on, each other dof is one q. A form u.K u becomes q.(T^T K T) q, symmetric
-/// where K is.
+/// prescribed dofs u0 is the value, tied ones follow their masters, hanging nodes the
+/// edge they lie on, each other dof is one q. A form u.K u becomes q.(T^T K T) q,
+/// symmetric where K is.
 class DofReduction
 {
 public:

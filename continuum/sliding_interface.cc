@@ -1,5 +1,6 @@
 #include "continuum/sliding_interface.h"
 
+#include "continuum/by_place.h"
 #include "continuum/section_mesh.h"
 
 #include <deal.II/base/mpi.h>
@@ -7,7 +8,6 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -35,7 +35,7 @@ struct FaceNode
 };
 
 /// Of the cells that this rank owns.
-std::vector<FaceNode> own_face_nodes(const ElasticSolid &solid)
+std::vector<FaceNode> own_face_nodes(const DisplacementSpace &solid)
 {
   const auto &fe = solid.fe();
   const unsigned int n = fe.n_dofs_per_face();
@@ -92,26 +92,13 @@ std::vector<FaceNode> merged(const std::vector<std::vector<FaceNode>> &parts,
   std::vector<FaceNode> nodes;
   for (const auto &[dof, node] : by_dof)
     nodes.push_back(node);
-  std::sort(nodes.begin(), nodes.end(),
-            [](const FaceNode &a, const FaceNode &b)
-            { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  sort_by_place(nodes);
   return nodes;
 }
 
-/// The node of @p lower at the place of @p upper; null without one.
-const FaceNode *partner(const FaceNode &upper, const std::vector<FaceNode> &lower)
-{
-  const double tolerance = 1e-6 * upper.cell;
-  auto node = std::lower_bound(lower.begin(), lower.end(), upper.x - tolerance,
-                               [](const FaceNode &a, const double x) { return a.x < x; });
-  for (; node != lower.end() && node->x <= upper.x + tolerance; ++node)
-    if (std::abs(node->y - upper.y) <= tolerance)
-      return &*node;
-  return nullptr;
-}
 } // namespace
 
-std::vector<Tie> sliding_interfaces(const ElasticSolid &solid)
+std::vector<Tie> sliding_interfaces(const DisplacementSpace &solid)
 {
   const auto parts = Utilities::MPI::all_gather(solid.dof_handler().get_communicator(),
                                                 own_face_nodes(solid));
@@ -119,7 +106,8 @@ std::vector<Tie> sliding_interfaces(const ElasticSolid &solid)
   std::vector<Tie> ties;
   for (const FaceNode &node : upper)
   {
-    const FaceNode *const below = partner(node, lower);
+    const FaceNode *const below =
+        at_place(lower, node.x, node.y, same_place * node.cell);
     if (below == nullptr || lower.size() != upper.size()) // seen alike by all ranks
       throw std::invalid_argument(
           "sliding interface: the node at x = " + std::to_string(node.x) +

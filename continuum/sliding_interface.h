@@ -15,5 +15,5 @@ namespace antiform::continuum
 /// \return ties of the upper nodes that this rank owns. Throws std::invalid_argument on
 /// all
 ///         ranks where an inner face has no partner. Collective.
-std::vector<Tie> sliding_interfaces(const ElasticSolid &solid);
+std::vector<Tie> sliding_interfaces(const DisplacementSpace &solid);
 } // namespace antiform::continuum
