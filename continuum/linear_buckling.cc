@@ -193,7 +193,6 @@ std::vector<BucklingMode> lowest_buckling_modes(const ElasticSolid &solid,
     std::copy_n((*solution.Evecs)[k], unknowns.locally_owned_size(), unknowns.begin());
     Vector shape = reduction.expand(unknowns, true);
     shape /= shape.linfty_norm();
-    shape.update_ghost_values();
     modes.push_back({factor, shape});
   }
   if (modes.empty())
@@ -204,6 +203,8 @@ std::vector<BucklingMode> lowest_buckling_modes(const ElasticSolid &solid,
   std::sort(modes.begin(), modes.end(),
             [](const BucklingMode &a, const BucklingMode &b)
             { return a.load_factor < b.load_factor; });
+  for (BucklingMode &mode : modes)
+    mode.shape.update_ghost_values(); // copied vectors have none
   return modes;
 }
 } // namespace antiform::continuum

@@ -1,5 +1,6 @@
 // The corner of an L whose stress is infinite: even cells converge slowly whatever their
-// degree, cells refined by the indicator at the rate of a smooth field.
+// degree, cells refined by the indicator at the rate of a smooth field. Each rank solves
+// alone but in the last test: quicker.
 #include "continuum/error_indicator.h"
 #include "continuum/hanging_nodes.h"
 #include "continuum/loads.h"
@@ -143,7 +144,7 @@ Level solve_on(const Corner &corner,
 std::vector<Level> levels(const unsigned int degree,
                           const bool adaptive,
                           const double most,
-                          const MPI_Comm communicator = MPI_COMM_WORLD)
+                          const MPI_Comm communicator = MPI_COMM_SELF)
 {
   const Corner corner;
   Triangulation triangulation(communicator);
@@ -220,8 +221,8 @@ TEST(AdaptiveCorner, IsRefinedAlikeOnAnyRanks)
 {
   for (const unsigned int degree : {1u, 2u})
   {
-    const auto all = levels(degree, true, 1500),
-               alone = levels(degree, true, 1500, MPI_COMM_SELF);
+    const auto all = levels(degree, true, 1500, MPI_COMM_WORLD),
+               alone = levels(degree, true, 1500);
     ASSERT_EQ(all.size(), alone.size());
     for (std::size_t k = 0; k < all.size(); ++k)
     {
