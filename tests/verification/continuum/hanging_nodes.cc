@@ -281,3 +281,31 @@ TEST(HangingNodes, AreNeitherPrescribedNorTied)
   EXPECT_THROW(StaticSolver(solid, solid.stiffness(), values), std::invalid_argument);
   EXPECT_THROW(DofReduction(solid, values, {}), std::invalid_argument);
 }
+
+TEST(HangingNodes, LeaveMultigridAtWork)
+{
+  // Six levels of cells towards a corner: some 14 iterations in Q1 and 22 in Q2.
+  Triangulation triangulation(MPI_COMM_WORLD);
+  make_rectangle(triangulation, 1., 1., 8, 8);
+  for (const double radius : {0.6, 0.4, 0.2, 0.1, 0.05})
+    refine_where(triangulation, [&](const Point<2> &p)
+                 { return p.distance(Point<2>(0., 0.)) < radius; });
+  for (const unsigned int degree : {1u, 2u})
+  {
+    const ElasticSolid solid(triangulation, {rock}, degree);
+    const auto sides = prescribe_all_sides(solid, linear_field);
+    const auto force = body_force(solid,
+                                  [](const Point<2> &) {
+                                    return dealii::Tensor<1, 2>({1e6, -3e7});
+                                  });
+    auto u = solid.make_vector();
+    auto options = options_of(StaticSolver::Method::conjugate_gradients);
+    options.tolerance = 1e-10;
+    const unsigned int iterations =
+        StaticSolver(solid, solid.stiffness(), sides, options).solve(force, u);
+    EXPECT_LT(iterations, 40u); // without a preconditioner some hundreds
+    u -= solve_direct(solid, solid.stiffness(), sides, force);
+    // Tolerance times the condition that multigrid leaves, of displacements up to 5e-3 m.
+    EXPECT_LT(largest(u), 1e-8 * 5e-3);
+  }
+}
