@@ -211,6 +211,8 @@ void ArcLength::follow(Vector &displacement,
     rest = rest_next;
     landing = Landing(rest);
     path_.push_back({factor, rest + target, iterations});
+    if (options_.observe && !options_.observe(displacement, path_.back()))
+      return;
     length *= std::sqrt(static_cast<double>(options_.wanted_iterations) / iterations);
     length = std::min(length, options_.largest_length);
   }

@@ -15,6 +15,14 @@ namespace antiform::continuum
 class ArcLength
 {
 public:
+  /// A point of the path.
+  struct Point
+  {
+    double factor;
+    double measure;          ///< what follow() watches
+    unsigned int iterations; ///< that it took
+  };
+
   /// Lengths are root mean squares of the change of all displacements [m].
   struct Options
   {
@@ -28,14 +36,9 @@ public:
     unsigned int wanted_iterations = 5;
     unsigned int max_steps = 500;
     double stop_tolerance = 1e-6; ///< of follow(), over the way of its measure
-  };
-
-  /// A point of the path.
-  struct Point
-  {
-    double factor;
-    double measure;          ///< what follow() watches
-    unsigned int iterations; ///< that it took
+    /// Called after every step, the body being as assembled there; false, alike on all
+    /// ranks, ends follow(). May be empty.
+    std::function<bool(const Vector &displacement, const Point &point)> observe;
   };
 
   /// The body must outlive this object. Throws std::invalid_argument without a length.
