@@ -89,7 +89,7 @@ on_springs(const Side &side, const ClosedForms &forms, const double wavenumber)
 {
   Side seen_from_below = side;
   seen_from_below.far_face = Side::FarFace::rough_rigid;
-  const double m = seen_from_below.stiffness(wavenumber), k_f = side.far_spring;
+  const double m = seen_from_below.stiffness(wavenumber), k_f = side.beyond(wavenumber);
   return sum(scaled(forms.smooth_rigid(), k_f / (k_f + m)),
              scaled(forms.free(), m / (k_f + m)));
 }

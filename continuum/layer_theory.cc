@@ -197,7 +197,8 @@ double Side::stiffness(const double wavenumber) const
     // for a rigid and a - b^2/a that for a free far face. Put p_far = -k_far V_far.
     const double rigid = half_space * phi_smooth_rigid(chi);
     const double free = half_space * phi_free(chi);
-    return rigid > 0. ? rigid * (free + far_spring) / (rigid + far_spring) : 0.;
+    const double far = beyond(wavenumber);
+    return rigid > 0. ? rigid * (free + far) / (rigid + far) : 0.;
   }
   }
   throw std::logic_error("unknown far face");
@@ -211,9 +212,9 @@ double SupportedLayer::bending_force(const double wavenumber) const
 
 double SupportedLayer::support_stiffness(const double wavenumber) const
 {
+  double sum = direct_foundation + direct_shear * square(wavenumber);
   if (bonded)
-    return direct_foundation + bonded_support_stiffness(layer, sides, wavenumber);
-  double sum = direct_foundation;
+    return sum + bonded_support_stiffness(layer, sides, wavenumber);
   for (const Side &side : sides)
     sum += side.stiffness(wavenumber);
   return sum;

@@ -99,6 +99,13 @@ struct Side
   FarFace far_face = FarFace::half_space;
   double far_spring =
       0.; ///< Winkler stiffness, or rho g of a free top with gravity [Pa/m]
+  double far_shear = 0.; ///< G_p of a Pasternak foundation [Pa m]
+
+  /// Pressure on the springs beyond per displacement of a wave k, k_w + G_p k^2 [Pa/m].
+  double beyond(double wavenumber) const
+  {
+    return far_spring + far_shear * wavenumber * wavenumber;
+  }
 
   /// Pressure on the layer per displacement of a wave k into this side, K(k) [Pa/m].
   double stiffness(double wavenumber) const;
@@ -123,6 +130,7 @@ struct SupportedLayer
   double direct_foundation = 0.; ///< springs or buoyancy on the layer itself [Pa/m]
   bool thick = false;            ///< with thick_bending_force() for D k^2
   bool bonded = false;           ///< the sides stick to the layer; else they slide on it
+  double direct_shear = 0.;      ///< G_p of a Pasternak foundation on it [Pa m]
 
   /// K(k): all sides and the direct foundation [Pa/m].
   double support_stiffness(double wavenumber) const;
