@@ -1,14 +1,9 @@
 #include "cases/buckling_run.h"
 
+#include "cases/buckling_section.h"
 #include "cases/interrupt.h"
 #include "cases/mechanism.h"
-#include "cases/mesh_strips.h"
-#include "cases/scene.h"
 #include "cases/solid_run.h"
-#include "continuum/foundation.h"
-#include "continuum/linear_buckling.h"
-#include "continuum/section_mesh.h"
-#include "continuum/sliding_interface.h"
 #include "coupling/output/mesh_vtu.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
@@ -24,64 +19,6 @@ namespace antiform::cases
 {
 namespace
 {
-/// Mean compression along the layer [Pa], tension negative.
-double layer_stress(const Scene &scene, const continuum::Vector &displacement)
-{
-  double force = 0., area = 0.;
-  for (const auto &cell : scene.solid->cell_states(displacement))
-    if (cell.material == layer_material_id)
-    {
-      force -= cell.stress[0] * cell.area;
-      area += cell.area;
-    }
-  return dealii::Utilities::MPI::sum(force, scene.communicator()) /
-         dealii::Utilities::MPI::sum(area, scene.communicator());
-}
-
-/// Half waves of a shape: changes of sign, from column to column, of what the layer moves
-/// across. Columns that hardly move do not count.
-unsigned int half_waves(const Scene &scene, const continuum::Vector &shape)
-{
-  const continuum::ElasticSolid &solid = *scene.solid;
-  const SectionGeometry &g = scene.geometry;
-  std::vector<double> across(g.n_columns());
-  std::vector<dealii::types::global_dof_index> dofs(solid.fe().n_dofs_per_cell());
-  for (const auto &cell : solid.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned() && cell->material_id() == layer_material_id)
-    {
-      const double column =
-          std::floor((cell->center()[0] - g.x_min()) / g.length() * g.n_columns());
-      cell->get_dof_indices(dofs);
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-        if (solid.fe().system_to_component_index(i).first == 1)
-          across[static_cast<std::size_t>(column)] += shape(dofs[i]);
-    }
-  dealii::Utilities::MPI::sum(across, scene.communicator(), across);
-  double mean = 0., largest = 0., last = 0.; // a bare layer is held at one corner
-  for (const double u : across)
-    mean += u / static_cast<double>(across.size());
-  for (double &u : across)
-  {
-    u -= mean;
-    largest = std::max(largest, std::abs(u));
-  }
-  unsigned int n = 0;
-  for (const double u : across)
-    if (std::abs(u) > 1e-3 * largest)
-    {
-      n += last * u < 0. ? 1 : 0;
-      last = u;
-    }
-  return n;
-}
-
-struct Mode
-{
-  double shortening;       ///< [-]
-  double stress;           ///< of the layer [Pa]
-  unsigned int half_waves; ///< along the section
-};
-
 /// Wavelength of the least load in a section without end: minimum of a m^2 + b + c / m (a
 /// beam on a matrix) through the lowest mode and its two neighbours in number of half
 /// waves; the lowest mode's own where these are not among the modes [m].
@@ -112,13 +49,14 @@ double dominant_wavelength(const std::vector<Mode> &modes, const double length)
 
 /// What a reader should know before he believes the figures.
 std::vector<std::string>
-doubts(const Scene &scene, const std::vector<Mode> &modes, const int wanted)
+doubts(const BucklingSection &section, const std::vector<Mode> &modes, const int wanted)
 {
   std::vector<std::string> texts;
   char text[240];
   const Mode &lowest = modes.front();
-  const double columns = scene.geometry.n_columns();
-  if (lowest.half_waves == 0 || columns < 6. * lowest.half_waves)
+  const double columns = section.geometry().n_columns();
+  const bool refined = section.parameters().matrix.refinement_rounds > 0;
+  if (!refined && (lowest.half_waves == 0 || columns < 6. * lowest.half_waves))
   {
     std::snprintf(text, sizeof text,
                   "%.3g columns of cells a half wave: too few for a load to trust. Give "
@@ -126,7 +64,7 @@ doubts(const Scene &scene, const std::vector<Mode> &modes, const int wanted)
                   lowest.half_waves == 0 ? columns : columns / lowest.half_waves);
     texts.push_back(text);
   }
-  if (lowest.half_waves < 3 && scene.parameters.has("matrix"))
+  if (lowest.half_waves < 3 && section.parameters().has("matrix"))
     texts.push_back("the section holds " + std::to_string(lowest.half_waves) +
                     " half waves only: its length decides how long they are. Give "
                     "'Layer/Length ratio' more");
@@ -147,11 +85,9 @@ doubts(const Scene &scene, const std::vector<Mode> &modes, const int wanted)
 /// The closed form for the same scene, if it has one.
 std::optional<continuum::theory::CriticalState> theory_of(const Parameters &p)
 {
-  if (!p.has("matrix") || p.has("beds"))
+  if (!(p.has("matrix") || p.has("foundation")) || p.has("beds"))
     return std::nullopt;
-  continuum::theory::SupportedLayer layer{layer_of(p), matrix_sides(p)};
-  layer.bonded = p.matrix.interface == "cemented";
-  return layer.critical();
+  return supported_layer(p).critical();
 }
 
 std::string percent(const double ratio)
@@ -162,12 +98,10 @@ std::string percent(const double ratio)
 }
 
 /// Shapes as field files, and the table of loads.
-void write_modes(const Scene &scene,
-                 const std::vector<continuum::BucklingMode> &shapes,
-                 const std::vector<Mode> &modes,
-                 const std::string &directory)
+void write_modes(const BucklingSection &section, const std::string &directory)
 {
-  const bool first = dealii::Utilities::MPI::this_mpi_process(scene.communicator()) == 0;
+  const std::vector<Mode> &modes = section.modes();
+  const bool first = dealii::Utilities::MPI::this_mpi_process(section.communicator()) == 0;
   std::optional<coupling::Table> table;
   if (first)
     table.emplace(directory + "/modes.csv",
@@ -179,41 +113,14 @@ void write_modes(const Scene &scene,
     const double n = modes[k].half_waves;
     if (first)
       table->append(std::vector<double>{k + 1., modes[k].shortening, modes[k].stress, n,
-                                        n > 0. ? 2. * scene.geometry.length() / n : 0.});
+                                        n > 0. ? 2. * section.geometry().length() / n : 0.});
     char file[64];
     std::snprintf(file, sizeof file, "fields/mode_%04zu.vtu", k + 1);
-    coupling::write_mesh_vtu(directory + "/" + file, *scene.solid, shapes[k].shape);
+    coupling::write_mesh_vtu(directory + "/" + file, section.solid(), section.shapes()[k].shape);
     fields.push_back({k + 1., "continuum", file});
   }
   if (first)
     coupling::write_pvd(directory + "/fields.pvd", fields);
-}
-
-/// Loads and shapes of the scene's straight section. Throws BucklingStopped.
-std::vector<Mode> find_modes(const Scene &scene,
-                             const std::function<bool()> &stop,
-                             std::vector<continuum::BucklingMode> &shapes)
-{
-  const Parameters &p = scene.parameters;
-  const continuum::ElasticSolid &solid = *scene.solid;
-  constexpr double shortening = 1e-6; // any: linear
-  const std::vector<continuum::Tie> ties =
-      p.has("matrix") && p.matrix.interface == "sliding"
-          ? continuum::sliding_interfaces(solid)
-          : std::vector<continuum::Tie>();
-  const continuum::DofReduction reduction(
-      solid, section_supports(p, scene.geometry, solid, shortening), ties);
-  const continuum::Vector straight =
-      continuum::solve_reduced(solid, reduction, solid.make_vector());
-  const double stress = layer_stress(scene, straight);
-  shapes = continuum::lowest_buckling_modes(
-      solid, solid.geometric_stiffness(straight), reduction,
-      {static_cast<unsigned int>(p.run.modes), 1e-9, 200, stop});
-  std::vector<Mode> modes;
-  for (const continuum::BucklingMode &shape : shapes)
-    modes.push_back({shape.load_factor * shortening, shape.load_factor * stress,
-                     half_waves(scene, shape.shape)});
-  return modes;
 }
 
 void log_modes(const std::vector<Mode> &modes, RunLog &log)
@@ -229,12 +136,12 @@ void log_modes(const std::vector<Mode> &modes, RunLog &log)
 }
 
 /// The summary's results, and in words what they are against the closed form.
-std::string compare(const Scene &scene,
+std::string compare(const BucklingSection &section,
                     const std::vector<Mode> &modes,
                     std::map<std::string, Result> &results)
 {
   const Mode &lowest = modes.front();
-  const double wavelength = dominant_wavelength(modes, scene.geometry.length());
+  const double wavelength = dominant_wavelength(modes, section.geometry().length());
   results = {{"critical_stress", {lowest.stress, "Pa"}},
              {"critical_shortening", {lowest.shortening, "-"}},
              {"half_waves", {static_cast<double>(lowest.half_waves), "-"}},
@@ -242,7 +149,7 @@ std::string compare(const Scene &scene,
   char text[128];
   std::snprintf(text, sizeof text, "the layer buckles at %.4g Pa, wavelength %.4g m",
                 lowest.stress, wavelength);
-  const auto theory = theory_of(scene.parameters);
+  const auto theory = theory_of(section.parameters());
   if (!theory)
     return text;
   results["theory_stress"] = {theory->stress, "Pa"};
@@ -250,6 +157,71 @@ std::string compare(const Scene &scene,
   return std::string(text) + " (closed form of a long layer: stress " +
          percent(lowest.stress / theory->stress) + ", wavelength " +
          percent(wavelength / theory->wavelength) + ")";
+}
+/// Rounds of refinement, and what each was worth.
+class RefinementRecord
+{
+public:
+  RefinementRecord(const std::string &directory, const BucklingSection &section)
+      : section_(section)
+  {
+    if (section.parameters().matrix.refinement_rounds > 0 &&
+        dealii::Utilities::MPI::this_mpi_process(section.communicator()) == 0)
+      table_.emplace(directory + "/refinement.csv",
+                     std::vector<std::string>{"round", "dofs", "critical_stress_Pa",
+                                              "change", "error_indicator"});
+  }
+
+  void add(const int round, RunLog &log)
+  {
+    const double stress = section_.modes().front().stress,
+                 change = stress_ > 0. ? stress / stress_ - 1. : 0.,
+                 dofs = static_cast<double>(section_.solid().dof_handler().n_dofs()),
+                 estimate = section_.estimate();
+    if (table_)
+      table_->append(std::vector<double>{static_cast<double>(round), dofs, stress, change,
+                                         estimate});
+    stress_ = stress;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "  round %d: %.0f dofs, %.6e Pa, changed by %+.1e, indicator %.1e",
+                  round, dofs, stress, change, estimate);
+    log.line(text);
+    last_change = change;
+    last_estimate = estimate;
+  }
+
+  double last_change = 0., last_estimate = 0.;
+
+private:
+  const BucklingSection &section_;
+  std::optional<coupling::Table> table_;
+  double stress_ = 0.;
+};
+
+/// Solve, and refine as often as the deck says; the number of solves. Throws
+/// BucklingStopped.
+int solve_in_rounds(BucklingSection &section,
+                    const std::function<bool()> &stop,
+                    const std::string &directory,
+                    RunLog &log,
+                    std::map<std::string, Result> &results)
+{
+  const int n_rounds = section.parameters().matrix.refinement_rounds;
+  section.solve(stop);
+  if (n_rounds == 0)
+    return 2; // the straight section, and one factor for all modes
+  RefinementRecord record(directory, section);
+  record.add(0, log);
+  int round = 0;
+  while (round < n_rounds && section.refine())
+  {
+    section.solve(stop);
+    record.add(++round, log);
+  }
+  results["change_in_last_round"] = {record.last_change, "-"};
+  results["error_indicator"] = {record.last_estimate, "-"};
+  return 2 * (round + 1);
 }
 } // namespace
 
@@ -260,24 +232,18 @@ int run_buckling(const Parameters &p,
 {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
-  const std::unique_ptr<Scene> scene =
-      build(p, communicator, [&](const std::string &what) { log.line("  " + what); });
-  continuum::ElasticSolid &solid = *scene->solid;
-  if (p.has("foundation"))
-    solid.add_to_stiffness(continuum::winkler_foundation(
-        solid, {continuum::boundary::bottom},
-        p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness));
-
-  log.line("  " + std::to_string(solid.dof_handler().n_dofs()) +
+  log.line("  building the mesh");
+  BucklingSection section(p, communicator);
+  log.line("  " + std::to_string(section.solid().dof_handler().n_dofs()) +
            " dofs: straight section, then modes");
-  std::vector<continuum::BucklingMode> shapes;
-  std::vector<Mode> modes;
   std::string status = "completed", words;
+  std::map<std::string, Result> results;
+  int n_solves = 0;
   try
   {
-    modes = find_modes(
-        *scene, [&] { return must_stop(begin, options.time_limit, communicator); },
-        shapes);
+    n_solves = solve_in_rounds(
+        section, [&] { return must_stop(begin, options.time_limit, communicator); },
+        options.output, log, results);
   }
   catch (const continuum::BucklingStopped &)
   {
@@ -285,15 +251,16 @@ int run_buckling(const Parameters &p,
     words = "a buckling run keeps no checkpoint, run it again";
   }
 
-  Summary summary = summary_of_solid(p, solid, begin);
+  Summary summary = summary_of_solid(p, section.solid(), begin);
   summary.status = status;
-  summary.solves = 2; // straight section, and one factor for all modes
+  summary.solves = n_solves;
   if (status == "completed")
   {
-    write_modes(*scene, shapes, modes, options.output);
-    words = compare(*scene, modes, summary.results);
-    summary.warnings = doubts(*scene, modes, p.run.modes);
-    log_modes(modes, log);
+    write_modes(section, options.output);
+    words = compare(section, section.modes(), summary.results);
+    summary.results.insert(results.begin(), results.end());
+    summary.warnings = doubts(section, section.modes(), p.run.modes);
+    log_modes(section.modes(), log);
   }
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)

@@ -198,10 +198,8 @@ TheoryRow cover_stiffness(const theory::SupportedLayer &layer)
 /// of 35 h (contrast 1e3), 7 % at 18 h and 29 % at 8 h.
 TheoryRow trust_row(const Parameters &p)
 {
-  theory::SupportedLayer scene{layer_of(p), matrix_sides(p)};
-  scene.bonded = p.matrix.interface == "cemented";
   const std::string name = "trust", label = "how far to trust them";
-  const auto state = scene.critical();
+  const auto state = supported_layer(p).critical();
   if (!state)
     return no_row(name, label, "no critical wave");
   const double wave = state->wavelength / p.layer.thickness;
@@ -266,7 +264,10 @@ TheorySection critical_states(const Parameters &p, const SectionGeometry &g)
 TheorySection at_length(const Parameters &p, const SectionGeometry &g)
 {
   TheorySection section{
-      "at_length", "Buckling at the length of the deck (E', smooth contact)", {}};
+      "at_length",
+      "Buckling at the length of the deck (E'" +
+          (p.has("matrix") ? "; contact " + p.matrix.interface : std::string()) + ")",
+      {}};
   const double slender = g.wavelength() / g.thickness();
   if (p.has("beds") || slender < shortest_beam)
   {
@@ -329,7 +330,8 @@ confinement_section(const Parameters &p, const SectionGeometry &g, const Confine
       figure_row("pressure", "pressure p on the layer", c.pressure, "Pa"),
       figure_row("friction_angle", "friction angle of the rock (--friction-angle)",
                  c.friction_angle, "degrees"),
-      figure_row("buckling_stress", "sigma_1 at buckling, ends that turn: p + sigma_E",
+      figure_row("buckling_stress",
+                 "sigma_1 at buckling without matrix, ends that turn: p + sigma_E",
                  c.pressure + theory::euler_stress_pinned(l.young_modulus, g.wavelength(),
                                                           g.thickness()),
                  "Pa"),
@@ -341,6 +343,12 @@ confinement_section(const Parameters &p, const SectionGeometry &g, const Confine
           "critical_slenderness_ratio", "folds before it fails above Lambda_c(p)",
           theory::confined_slenderness_limit(slope, c.pressure / l.compressive_strength),
           "-")};
+  if (p.has("matrix") && !p.has("beds"))
+    section.rows.insert(
+        section.rows.begin() + 3,
+        figure_row("buckling_stress_with_matrix", "the same with its matrix (E')",
+                   c.pressure + expect_mechanism(p, g).pinned * l.compressive_strength,
+                   "Pa"));
   return section;
 }
 
@@ -352,6 +360,27 @@ std::string mechanism_word(const double gamma, const bool at_once)
   if (gamma < 1.)
     return "buckle, then crush";
   return at_once && gamma <= 1.5 ? "fold and crush at once" : "crush";
+}
+
+/// Of all beds together, which crush when each of them does.
+TheoryRow mechanism_of_stack(const Parameters &p, const SectionGeometry &g)
+{
+  std::vector<theory::Layer> beds;
+  double crushing = 0.;
+  for (int k = 0; k < p.n_beds(); ++k)
+  {
+    const LayerParameters &rock = p.bed(k);
+    const double thickness = p.bed_share(k) * g.thickness();
+    beds.push_back({rock.young_modulus, rock.poisson_ratio, thickness});
+    crushing += rock.compressive_strength * thickness;
+  }
+  const bool stick = p.beds.interface == "cemented";
+  const double gamma = theory::stack_bending_stiffness(beds, stick) *
+                       std::pow(M_PI / g.wavelength(), 2) / crushing;
+  return words_row("stack",
+                   std::string("stack, beds that ") + (stick ? "stick" : "slide freely") +
+                       ", ends that turn, without matrix",
+                   mechanism_word(gamma, false));
 }
 
 TheorySection
@@ -376,14 +405,16 @@ mechanism_section(const Parameters &p, const SectionGeometry &g, const Confineme
                   mechanism_word(theory::stress_ratio_at_buckling(ratio), false)));
   }
   if (p.has("beds"))
+  {
+    section.rows.push_back(mechanism_of_stack(p, g));
     return section;
+  }
   const Mechanism e = expect_mechanism(p, g);
   const double strut = theory::stress_ratio_at_buckling(e.slenderness_ratio);
   section.rows.push_back(words_row("by_thesis_plot", "by the thesis' plot (Lambda alone)",
                                    mechanism_word(strut / c.failure_ratio, false)));
   // A straight layer may take a shorter wave than one in its length.
-  const theory::SupportedLayer scene{layer_of(p), matrix_sides(p)};
-  const theory::Mode mode = scene.critical_mode(g.wavelength());
+  const theory::Mode mode = supported_layer(p).critical_mode(g.wavelength());
   const double crushing = p.layer.compressive_strength * g.thickness();
   const double gamma = g.amplitude() == 0. && mode.half_waves > 1
                            ? std::min(e.guided, mode.force / crushing)
@@ -398,11 +429,7 @@ mechanism_section(const Parameters &p, const SectionGeometry &g, const Confineme
 
 double unit_weight(const Parameters &p)
 {
-  // Bulk over grain density of a packing, as of the mesh (scene.cc).
-  constexpr double solid_fraction = 0.84;
-  return p.has("gravity")
-             ? p.gravity.acceleration * solid_fraction * p.matrix.grain_density
-             : 0.;
+  return p.has("gravity") ? p.gravity.acceleration * p.matrix_density() : 0.;
 }
 
 double load_of_cover(const Parameters &p)
@@ -410,8 +437,7 @@ double load_of_cover(const Parameters &p)
   if (!p.has("matrix"))
     return 0.;
   const double cover = p.matrix.burial_depth_ratio * p.layer.thickness;
-  return (p.has("surface pressure") ? p.surface_pressure.pressure : 0.) +
-         unit_weight(p) * cover;
+  return p.pressure_on_top() + unit_weight(p) * cover;
 }
 
 Confinement confinement_of(const Parameters &p, const double friction_angle)

@@ -155,6 +155,13 @@ void declare_strengths(double &tensile_strength,
                        double &residual_friction,
                        Declarations &entries);
 void declare(LayerParameters &layer, Declarations &entries);
+/// Of finite elements in layer and matrix; @p bare: there is no matrix.
+void declare_mesh(MatrixParameters &matrix, bool bare, Declarations &entries);
+void declare(const std::string &section,
+             MaterialParameters &material,
+             Declarations &entries);
+void declare(FoundationParameters &foundation, Declarations &entries);
+void declare(AbsorbingBoundaryParameters &boundary, Declarations &entries);
 void declare(FracturesParameters &fractures, Declarations &entries);
 void declare(MeasurementCirclesParameters &circles, Declarations &entries);
 void declare(CalibrationParameters &calibration, Declarations &entries);
@@ -175,6 +182,8 @@ void check_circles(const Parameters &parameters, std::vector<Finding> &findings)
 /// The parts of it that finite elements and the buckling driver add.
 void check_materials(const Parameters &parameters, std::vector<Finding> &findings);
 void check_buckling(const Parameters &parameters, std::vector<Finding> &findings);
+void check_solid_scene(const Parameters &parameters, std::vector<Finding> &findings);
+void check_membrane_of_mesh(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that a calibration adds.
 void check_calibration(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases

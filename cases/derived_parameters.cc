@@ -134,10 +134,16 @@ MaterialParameters::MaterialParameters()
 {
 }
 
+bool Parameters::has_mesh_contact() const
+{
+  return has_layer_mesh() && has_matrix_mesh() && matrix.interface != "cemented";
+}
+
 bool Parameters::is_nonlinear() const
 {
   return run.driver == "static" &&
-         (run.strain == "finite" ||
+         (run.strain == "finite" || run.path == "arc length" || has_mesh_contact() ||
+          (has("foundation") && foundation.lifts_off) ||
           (has_layer_mesh() && layer_material.law != "elastic") ||
           (has_matrix_mesh() && matrix_material.law != "elastic"));
 }
@@ -177,5 +183,56 @@ double Parameters::grain_diameter() const
 double Parameters::matrix_modulus() const
 {
   return young_modulus() / matrix.stiffness_contrast;
+}
+
+bool Parameters::has_foundation_under(const std::string &face) const
+{
+  return has("foundation") && foundation.faces.find(face) != std::string::npos;
+}
+
+bool Parameters::is_absorbing(const std::string &face) const
+{
+  return has("absorbing boundary") &&
+         absorbing_boundary.faces.find(face) != std::string::npos;
+}
+
+double Parameters::foundation_stiffness() const
+{
+  return foundation.stiffness > 0.
+             ? foundation.stiffness
+             : foundation.stiffness_ratio * matrix_modulus() / layer.thickness;
+}
+
+double Parameters::foundation_shear() const
+{
+  return foundation.shear_ratio * foundation_stiffness() * layer.thickness *
+         layer.thickness;
+}
+
+namespace
+{
+// Bulk over grain density: the solid fraction of a packing.
+constexpr double solid_fraction = 0.84;
+} // namespace
+
+double Parameters::layer_density() const
+{
+  return solid_fraction * layer.grain_density;
+}
+
+double Parameters::matrix_density() const
+{
+  return solid_fraction * matrix.grain_density;
+}
+
+double Parameters::pressure_on_top() const
+{
+  if (!has("surface pressure"))
+    return 0.;
+  const double density = has("matrix") ? matrix_density() : layer_density();
+  return surface_pressure.pressure +
+         (has("gravity") ? surface_pressure.overburden_ratio * layer.thickness * density *
+                               gravity.acceleration
+                         : 0.);
 }
 } // namespace antiform::cases

@@ -88,6 +88,17 @@ std::vector<Effect> list_effects(const Parameters &p)
                                        : "grains and mesh do not meet"));
   list.push_back(choose("foundation", p.has("foundation"), "listed in Components",
                         "not listed in Components"));
+  list.push_back(choose("lift-off", p.has("foundation") && p.foundation.lifts_off,
+                        "'Foundation / Lifts off' is true",
+                        "no foundation that only pushes"));
+  list.push_back(choose("absorbing boundary", p.has("absorbing boundary"),
+                        "listed in Components", "not listed in Components"));
+  list.push_back(choose("interface", p.has_mesh_contact(),
+                        "layer and matrix of finite elements are not cemented",
+                        "no finite elements slide on one another"));
+  list.push_back(choose("refinement", mesh && p.matrix.refinement_rounds > 0,
+                        "'Matrix / Refinement rounds' is above 0",
+                        "no cells are refined"));
   list.push_back(choose(
       "base",
       grains && matrix && p.matrix.representation == "grains" && !p.has("foundation"),
@@ -103,7 +114,7 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
                         "gravity or surface pressure: the section was laid down under it",
                         "neither gravity nor surface pressure"));
-  list.push_back(choose("finite strain", p.is_nonlinear() && p.run.strain == "finite",
+  list.push_back(choose("finite strain", p.run.driver == "static" && p.run.strain == "finite",
                         "'Run / Strain' is finite",
                         mesh ? "'Run / Strain' is small" : "nothing is finite elements"));
   const auto any = [&](const auto &is)

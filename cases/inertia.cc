@@ -191,7 +191,7 @@ double layer_transit(const Scene &scene)
 {
   const Parameters &p = scene.parameters;
   const double modulus = p.plane_modulus();
-  double density = 0.84 * p.layer.grain_density;
+  double density = p.layer_density();
   if (scene.grains)
   {
     const discrete::Grains &grains = scene.grains->state.grains;

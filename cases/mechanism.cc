@@ -17,18 +17,39 @@ std::vector<theory::Side> matrix_sides(const Parameters &p)
     return {};
   const double E0 = p.matrix_modulus(), nu0 = p.matrix.poisson_ratio;
   const double h = p.layer.thickness;
-  const theory::Side cover{E0, nu0, p.matrix.burial_depth_ratio * h,
-                           theory::Side::FarFace::free, 0.};
+  theory::Side cover{E0, nu0, p.matrix.burial_depth_ratio * h,
+                     theory::Side::FarFace::free, 0.};
   theory::Side base{E0, nu0, p.matrix.base_depth_ratio * h,
                     theory::Side::FarFace::smooth_rigid, 0.};
-  if (p.has("foundation"))
+  if (p.has_foundation_under("top"))
+  {
+    cover.far_face = theory::Side::FarFace::spring;
+    cover.far_spring = p.foundation_stiffness();
+    cover.far_shear = p.foundation_shear();
+  }
+  if (p.has_foundation_under("base"))
   {
     base.far_face = theory::Side::FarFace::spring;
-    base.far_spring = p.foundation.stiffness_ratio * E0 / h;
+    base.far_spring = p.foundation_stiffness();
+    base.far_shear = p.foundation_shear();
   }
   else if (p.matrix.base == "fixed")
     base.far_face = theory::Side::FarFace::rough_rigid;
   return {cover, base};
+}
+
+theory::SupportedLayer supported_layer(const Parameters &p)
+{
+  theory::SupportedLayer layer{layer_of(p), matrix_sides(p)};
+  layer.bonded =
+      p.matrix.interface == "cemented" || p.matrix.interface == "frictional";
+  for (const std::string face : {"base", "top"})
+    if (!p.has("matrix") && p.has_foundation_under(face))
+    {
+      layer.direct_foundation += p.foundation_stiffness();
+      layer.direct_shear += p.foundation_shear();
+    }
+  return layer;
 }
 
 Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
@@ -43,7 +64,7 @@ Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
       theory::critical_slenderness(l.young_modulus, l.compressive_strength) /
       std::sqrt(12.);
   const theory::SupportedLayer bare{layer, {}, 0., false};
-  const theory::SupportedLayer buried{layer, matrix_sides(p), 0., false};
+  const theory::SupportedLayer buried = supported_layer(p);
   const double crushing = l.compressive_strength * l.thickness;
   if (l.shape == "straight") // free to choose among m half waves, whatever its ends
   {

@@ -26,5 +26,9 @@ continuum::theory::Layer layer_of(const Parameters &p);
 /// it stands on. None without a matrix.
 std::vector<continuum::theory::Side> matrix_sides(const Parameters &p);
 
+/// The layer between them in the contact of the deck, or on its foundation where there is
+/// no matrix; a frictional interface counts as one that holds.
+continuum::theory::SupportedLayer supported_layer(const Parameters &p);
+
 Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g);
 } // namespace antiform::cases

@@ -5,13 +5,25 @@
 
 namespace antiform::cases
 {
+namespace
+{
+/// Boundaries of @p n equal rows, as shares of the height.
+std::vector<double> even_rows(const int n)
+{
+  std::vector<double> rows;
+  for (int r = 0; r <= n; ++r)
+    rows.push_back(static_cast<double>(r) / n);
+  return rows;
+}
+} // namespace
+
 std::vector<continuum::Strip> mesh_strips(const Parameters &p,
                                           const SectionGeometry &geometry)
 {
   const double d = geometry.diameter(), cell = p.matrix.cell_size * d;
   const double largest = p.matrix.largest_cell * d;
   const bool layer_is_mesh = p.layer.representation == "continuum";
-  const bool joined = p.matrix.interface != "sliding"; // else faces lie on one another
+  const bool joined = !p.has_mesh_contact(); // else faces lie on one another
   const double uniform = layer_is_mesh ? 0. : p.bridging.overlap * d;
   const auto core_top = [&geometry](const double x) { return geometry.core_top(x); };
   const auto core_bottom = [&geometry](const double x)
@@ -31,17 +43,17 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
   {
     const int rows =
         std::max(2, static_cast<int>(std::lround(geometry.thickness() / cell)));
-    continuum::Strip layer{
-        core_bottom, core_top, {}, layer_material_id, geometry.has_matrix() && joined};
-    for (int r = 0; r <= rows; ++r)
-      layer.rows.push_back(static_cast<double>(r) / rows);
-    strips.push_back(layer);
+    strips.push_back({core_bottom, core_top, even_rows(rows), layer_material_id,
+                      geometry.has_matrix() && joined});
   }
   if (geometry.has_matrix())
   {
     const double height = geometry.surface() - geometry.core_top(0.);
     strips.push_back({core_top, surface,
-                      continuum::graded_rows(height, cell, uniform, 1.3, largest, false),
+                      p.matrix.cover_rows > 0
+                          ? even_rows(p.matrix.cover_rows)
+                          : continuum::graded_rows(height, cell, uniform, 1.3, largest,
+                                                   false),
                       matrix_material_id, layer_is_mesh && joined});
   }
   return strips;

@@ -1,21 +1,17 @@
 #include "cases/nonlinear_run.h"
 
 #include "cases/interrupt.h"
-#include "cases/mesh_strips.h"
-#include "cases/solid_laws.h"
+#include "cases/nonlinear_section.h"
 #include "cases/solid_run.h"
+#include "continuum/arc_length.h"
 #include "continuum/errors.h"
-#include "continuum/foundation.h"
-#include "continuum/loads.h"
 #include "continuum/newton_solver.h"
-#include "continuum/section_mesh.h"
 #include "coupling/output/mesh_vtu.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
 
 #include <deal.II/base/mpi.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -26,192 +22,28 @@ namespace antiform::cases
 namespace
 {
 using continuum::Vector;
-using dealii::Point;
-
-constexpr double solid_fraction = 0.84; // of the grains that the densities are of
-
-/// What the run says of one equilibrium.
-struct Reading
-{
-  double wall_force = 0.; ///< on layer and matrix [N]
-  /// Of the layer, compression > 0 [Pa]: the walls' force over its thickness; in a matrix
-  /// the mean of Cauchy's stress in the cells beside a wall.
-  double axial_stress = 0.;
-  double fold_amplitude = 0.; ///< crest over troughs [m]
-  double plastic_share = 0.;  ///< of the layer's area that has yielded [-]
-};
-
-/// The body of a deck under its loads.
-class Section
-{
-public:
-  Section(const Parameters &p, const MPI_Comm communicator)
-      : p_(p)
-      , geometry_(p)
-      , mesh_(make_mesh(p, geometry_, communicator))
-      , solid_(*mesh_, solid_laws(p), options())
-  {
-    if (p.has("foundation"))
-      solid_.add_springs(continuum::winkler_foundation(
-          solid_, {continuum::boundary::bottom},
-          p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness));
-    loaded_.emplace(solid_, constant_loads(), shortening_to(end_shortening()));
-  }
-
-  continuum::NonlinearSolid &solid() { return solid_; }
-  continuum::LoadedSolid &loaded() { return *loaded_; }
-  /// At load factor 1; without walls the sides are held.
-  double end_shortening() const { return p_.has("walls") ? p_.run.end_shortening : 0.; }
-
-  Reading read(const Vector &displacement) const;
-
-private:
-  /// Pressure under which the section was laid down, at a height [Pa].
-  double pressure_at(const double y) const
-  {
-    return surface_pressure() +
-           (p_.has("gravity") ? solid_fraction * p_.matrix.grain_density *
-                                    p_.gravity.acceleration * (geometry_.surface() - y)
-                              : 0.);
-  }
-  double surface_pressure() const
-  {
-    return p_.has("surface pressure") ? p_.surface_pressure.pressure : 0.;
-  }
-  bool is_in_layer(const Point<2> &x, const double slack) const
-  {
-    return x[1] < geometry_.core_top(x[0]) + slack &&
-           x[1] > geometry_.core_bottom(x[0]) - slack;
-  }
-
-  continuum::NonlinearSolid::Options options() const
-  {
-    continuum::NonlinearSolid::Options options;
-    options.degree = static_cast<unsigned int>(p_.matrix.element_degree);
-    if (p_.has("gravity") || p_.has("surface pressure"))
-      options.initial_stress = [this](const Point<2> &x)
-      {
-        const double P = pressure_at(x[1]);
-        return continuum::PointStress{-P, -P, -P, 0.};
-      };
-    return options;
-  }
-
-  continuum::Loads constant_loads() const
-  {
-    continuum::Loads loads;
-    loads.displacements = section_supports(p_, geometry_, solid_, 0.);
-    if (p_.has("gravity"))
-      loads.dead = continuum::body_force(
-          solid_,
-          [this](const Point<2> &x)
-          {
-            const double density =
-                is_in_layer(x, 0.) ? p_.layer.grain_density : p_.matrix.grain_density;
-            return dealii::Tensor<1, 2>(
-                {0., -solid_fraction * density * p_.gravity.acceleration});
-          });
-    if (!p_.has("surface pressure"))
-      return loads;
-    if (p_.run.strain == "finite")
-      loads.pressures.emplace_back(
-          solid_, continuum::BoundaryIds{continuum::boundary::top}, surface_pressure());
-    else
-    {
-      Vector force =
-          continuum::pressure(solid_, {continuum::boundary::top}, surface_pressure());
-      if (loads.dead)
-        *loads.dead += force;
-      else
-        loads.dead = force;
-    }
-    return loads;
-  }
-
-  continuum::Loads shortening_to(const double shortening) const
-  {
-    continuum::Loads loads;
-    loads.displacements = section_supports(p_, geometry_, solid_, shortening);
-    return loads;
-  }
-
-  /// Mean rise of the layer in a column's width about @p x [m].
-  double rise(const Vector &displacement, double x) const;
-
-  const Parameters &p_;
-  SectionGeometry geometry_;
-  std::unique_ptr<dealii::parallel::distributed::Triangulation<2>> mesh_;
-  continuum::NonlinearSolid solid_;
-  std::optional<continuum::LoadedSolid> loaded_;
-};
-
-double Section::rise(const Vector &displacement, const double x) const
-{
-  const double reach =
-      0.5 * geometry_.length() / geometry_.n_columns() + 1e-9 * geometry_.length();
-  double sum = 0., n = 0.;
-  for (const auto dof : solid_.locally_owned())
-    if (solid_.component(dof) == 1)
-      if (const Point<2> place = solid_.support_point(dof);
-          std::abs(place[0] - x) <= reach && is_in_layer(place, 1e-9))
-      {
-        sum += displacement(dof);
-        n += 1.;
-      }
-  const MPI_Comm communicator = mesh_->get_communicator();
-  return dealii::Utilities::MPI::sum(sum, communicator) /
-         dealii::Utilities::MPI::sum(n, communicator);
-}
-
-Reading Section::read(const Vector &displacement) const
-{
-  const MPI_Comm communicator = mesh_->get_communicator();
-  const double small = 1e-9 * geometry_.length();
-  const Vector &reactions = loaded_->reactions();
-  double force = 0.;
-  for (const auto dof : solid_.locally_owned())
-    if (solid_.component(dof) == 0 &&
-        solid_.support_point(dof)[0] < geometry_.x_min() + small)
-      force += reactions(dof);
-  double yielded = 0., area = 0., pressed = 0., beside_wall = 0.;
-  const double first_column =
-      geometry_.x_min() + geometry_.length() / geometry_.n_columns();
-  for (const auto &point : solid_.point_states(displacement))
-    if (point.material == layer_material_id)
-    {
-      yielded += point.plastic_strain > 0. ? point.area : 0.;
-      area += point.area;
-      const double of_wall = point.place[0] < first_column ? point.area : 0.;
-      pressed -= of_wall * point.stress.xx;
-      beside_wall += of_wall;
-    }
-  Reading reading;
-  reading.wall_force = dealii::Utilities::MPI::sum(force, communicator);
-  // Nodes between layer and matrix react for both; without a matrix the force is exact.
-  pressed = dealii::Utilities::MPI::sum(pressed, communicator) /
-            dealii::Utilities::MPI::sum(beside_wall, communicator);
-  reading.axial_stress =
-      p_.has("matrix") ? pressed : reading.wall_force / geometry_.thickness();
-  const double half = 0.5 * geometry_.wavelength();
-  reading.fold_amplitude = geometry_.amplitude() + rise(displacement, 0.) -
-                           0.5 * (rise(displacement, -half) + rise(displacement, half));
-  reading.plastic_share = dealii::Utilities::MPI::sum(yielded, communicator) /
-                          dealii::Utilities::MPI::sum(area, communicator);
-  return reading;
-}
 
 /// Table, field files and the peak.
 class NonlinearRecord
 {
 public:
-  NonlinearRecord(const std::string &directory, const MPI_Comm communicator)
+  NonlinearRecord(const Parameters &p,
+                  const std::string &directory,
+                  const MPI_Comm communicator)
       : directory_(directory)
+      , lifts_off_(p.has("foundation") && p.foundation.lifts_off)
+      , has_interface_(p.has_mesh_contact())
   {
+    std::vector<std::string> columns = {
+        "step",         "shortening",       "axial_stress_Pa",
+        "wall_force_N", "fold_amplitude_m", "plastic_share",
+        "newton_iterations"};
+    if (lifts_off_)
+      columns.insert(columns.end(), {"crest_height_m", "lifted_length_m"});
+    if (has_interface_)
+      columns.insert(columns.end(), {"open_length_m", "relative_slip"});
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      history_.emplace(directory + "/history.csv",
-                       std::vector<std::string>{"step", "shortening", "axial_stress_Pa",
-                                                "wall_force_N", "fold_amplitude_m",
-                                                "plastic_share", "newton_iterations"});
+      history_.emplace(directory + "/history.csv", columns);
   }
 
   void add(const int step,
@@ -221,11 +53,16 @@ public:
            const continuum::NonlinearSolid &solid,
            const Vector &displacement)
   {
+    std::vector<double> line = {static_cast<double>(step), shortening,
+                                reading.axial_stress,      reading.wall_force,
+                                reading.fold_amplitude,    reading.plastic_share,
+                                static_cast<double>(iterations)};
+    if (lifts_off_)
+      line.insert(line.end(), {reading.crest_height, reading.lifted_length});
+    if (has_interface_)
+      line.insert(line.end(), {reading.open_length, reading.relative_slip});
     if (history_)
-      history_->append(std::vector<double>{static_cast<double>(step), shortening,
-                                           reading.axial_stress, reading.wall_force,
-                                           reading.fold_amplitude, reading.plastic_share,
-                                           static_cast<double>(iterations)});
+      history_->append(line);
     char file[64];
     std::snprintf(file, sizeof file, "fields/continuum_%04d.vtu", step);
     coupling::write_mesh_vtu(directory_ + "/" + file, solid, displacement);
@@ -241,16 +78,20 @@ public:
     reached = shortening;
   }
 
+  std::int64_t n_states() const { return static_cast<std::int64_t>(fields_.size()); }
+
   Reading peak, last;
   double strain_at_peak = 0., reached = 0.;
 
 private:
   std::string directory_;
+  bool lifts_off_, has_interface_;
   std::optional<coupling::Table> history_;
   std::vector<coupling::PvdEntry> fields_;
 };
 
-std::map<std::string, Result> results_of(const NonlinearRecord &record,
+std::map<std::string, Result> results_of(const Parameters &p,
+                                         const NonlinearRecord &record,
                                          const std::size_t iterations,
                                          const bool shortened)
 {
@@ -260,6 +101,16 @@ std::map<std::string, Result> results_of(const NonlinearRecord &record,
       {"fold_amplitude", {record.last.fold_amplitude, "m"}},
       {"plastic_share", {record.last.plastic_share, "-"}},
       {"solver_iterations", {static_cast<double>(iterations), "-"}}};
+  if (p.has("foundation") && p.foundation.lifts_off)
+  {
+    results["crest_height"] = {record.last.crest_height, "m"};
+    results["lifted_length"] = {record.last.lifted_length, "m"};
+  }
+  if (p.has_mesh_contact())
+  {
+    results["open_length"] = {record.last.open_length, "m"};
+    results["relative_slip"] = {record.last.relative_slip, "-"};
+  }
   if (shortened)
   {
     results["peak_stress"] = {record.peak.axial_stress, "Pa"};
@@ -305,11 +156,20 @@ std::string take_step(const int step,
   return "";
 }
 
+void log_reading(const int step, const double shortening, const Reading &r, RunLog &log)
+{
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "  step %d: shortening %.4e, axial stress %.4e Pa, amplitude %.4g m", step,
+                shortening, r.axial_stress, r.fold_amplitude);
+  log.line(text);
+}
+
 /// Load steps to the end, or to where there is no equilibrium any more: the state is then
 /// that of the last good part of the step.
 Course shorten(const Parameters &p,
                const std::function<bool()> &must_stop_now,
-               Section &section,
+               NonlinearSection &section,
                continuum::NewtonSolver &newton,
                NonlinearRecord &record,
                RunLog &log)
@@ -341,11 +201,62 @@ Course shorten(const Parameters &p,
     record.add(step, reached * section.end_shortening(), reading,
                iterations - course.iterations, section.solid(), u);
     course.iterations = iterations;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "  step %d: shortening %.4e, axial stress %.4e Pa, amplitude %.4g m",
-                  step, record.reached, reading.axial_stress, reading.fold_amplitude);
-    log.line(text);
+    log_reading(step, record.reached, reading, log);
+  }
+  return course;
+}
+
+/// Along the path by arc length to the end shortening, through limit points, or to where
+/// it cannot be followed any more.
+Course follow(const Parameters &p,
+              const std::function<bool()> &must_stop_now,
+              NonlinearSection &section,
+              continuum::NewtonSolver &newton,
+              NonlinearRecord &record,
+              RunLog &log)
+{
+  Vector u = section.solid().make_vector();
+  Course course;
+  course.failure = take_step(0, 1, 0., newton, u);
+  int step = 0;
+  const auto note =
+      [&](const Vector &displacement, const continuum::ArcLength::Point &point)
+  {
+    const Reading reading = section.read(displacement);
+    record.add(step, point.factor * section.end_shortening(), reading, point.iterations,
+               section.solid(), displacement);
+    course.iterations += point.iterations;
+    log_reading(step, record.reached, reading, log);
+    ++step;
+    if (must_stop_now())
+      course.status = "interrupted";
+    return course.status == "completed";
+  };
+  const auto first = [&]
+  { return static_cast<unsigned int>(newton.steps().back().residuals.size() - 1); };
+  if (!course.failure.empty() || !note(u, {0., 0., first()}) ||
+      section.end_shortening() == 0.)
+  {
+    course.status = course.failure.empty() ? course.status : "failed";
+    return course;
+  }
+  continuum::ArcLength::Options options;
+  // Root mean square of a uniform shortening that moves both ends in.
+  options.first_length = section.end_shortening() / p.run.load_steps *
+                         section.geometry().length() / std::sqrt(24.);
+  options.observe = note;
+  options.max_steps = 20 * static_cast<unsigned int>(p.run.load_steps);
+  continuum::ArcLength path(section.loaded(), options);
+  double factor = 0.;
+  try // raised on all ranks together
+  {
+    path.follow(
+        u, factor, [](const Vector &, const double reached) { return reached; }, 1.);
+  }
+  catch (const NumericalError &error)
+  {
+    course.status = "failed";
+    course.failure = error.what();
   }
   return course;
 }
@@ -359,10 +270,10 @@ int run_nonlinear(const Parameters &p,
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
   log.line("  building the mesh");
-  Section section(p, communicator);
+  NonlinearSection section(p, communicator);
   continuum::NewtonSolver newton(section.loaded(), {});
-  NonlinearRecord record(options.output, communicator);
-  const Course course = shorten(
+  NonlinearRecord record(p, options.output, communicator);
+  const Course course = (p.run.path == "arc length" ? follow : shorten)(
       p, [&] { return must_stop(begin, options.time_limit, communicator); }, section,
       newton, record, log);
 
@@ -370,8 +281,16 @@ int run_nonlinear(const Parameters &p,
   summary.status = course.status;
   if (!course.failure.empty())
     summary.warnings.push_back(course.failure);
-  summary.steps = summary.solves = static_cast<std::int64_t>(newton.steps().size());
-  summary.results = results_of(record, course.iterations, section.end_shortening() > 0.);
+  summary.steps = summary.solves = record.n_states();
+  if (record.last.relative_slip > 0.3)
+    summary.warnings.push_back(
+        "layer and matrix have slipped on one another by " +
+        coupling::shortest_text(record.last.relative_slip) +
+        " of a cell, and pairs of faces stay as they were: pressures along the interface "
+        "err by as much of their change from cell to cell. Give 'Matrix/Cell aspect "
+        "ratio' more, or end sooner");
+  summary.results =
+      results_of(p, record, course.iterations, section.end_shortening() > 0.);
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     write_summary(options.output + "/summary.json", summary);
@@ -379,8 +298,9 @@ int run_nonlinear(const Parameters &p,
     log.line("warning: " + warning);
   char text[160];
   std::snprintf(text, sizeof text,
-                "%s: %zu equilibria, %zu Newton iterations, peak %.4g Pa at %.4g",
-                course.status.c_str(), newton.steps().size(), course.iterations,
+                "%s: %lld equilibria, %zu Newton iterations, peak %.4g Pa at %.4g",
+                course.status.c_str(), static_cast<long long>(summary.solves),
+                course.iterations,
                 record.peak.axial_stress, record.strain_at_peak);
   log.line(std::string(text) + (course.status == "interrupted"
                                     ? "; a static run keeps no checkpoint, run it again "

@@ -37,16 +37,15 @@ void check_components(const Parameters &p, Findings &findings)
   if (!p.has("layer"))
     find(
         "there is no layer, and every length is a multiple of its thickness. Add layer.");
-  if (p.has("foundation") && !p.has("matrix"))
-    find("foundation without matrix: its stiffness is a multiple of the matrix' modulus, "
-         "and "
-         "it carries the matrix' base. Add matrix or remove foundation.");
+  if (p.has("foundation") && !p.has("matrix") && !p.is_bare_mesh())
+    find("foundation without matrix: it carries finite elements or the matrix' base. Add "
+         "matrix, give 'Layer/Representation' = 'continuum', or remove foundation.");
   for (const std::string load : {"gravity", "surface pressure"})
-    if (p.has(load) && !p.has("matrix"))
+    if (p.has(load) && !p.has("matrix") && !p.has_foundation_under("base"))
     {
       std::string text = load;
       text += " without matrix: nothing would carry the layer, and it would fall. Add "
-              "matrix or remove ";
+              "matrix, under a layer of finite elements a foundation, or remove ";
       text += load;
       find(text + ".");
     }
@@ -85,6 +84,8 @@ void check_specimen(const Parameters &p, Findings &findings)
                                "'Layer/Shape' = 'straight', 'Layer/Representation' = "
                                "'grains' and no matrix in 'Components'";
   const bool pulls = p.has("walls") && p.walls.action == "pull";
+  if (p.has("membrane") && p.is_bare_mesh())
+    return check_membrane_of_mesh(p, findings);
   if (p.confinement() != nullptr && (!p.is_specimen() || !p.has("walls")))
     findings.push_back({{"Components"},
                         "servo walls and membrane confine a specimen between walls, " +
@@ -245,19 +246,12 @@ void check_matrix(const Parameters &p, Findings &findings)
          "a layer of finite elements in a matrix of grains does not exist. "
          "Set 'Layer/Representation' = 'grains', or this to 'continuum'."});
 
-  if (p.layer.representation == "continuum" && m.interface == "frictionless")
-    findings.push_back(
-        {{"Matrix/Interface", "Layer/Representation"},
-         "a layer of finite elements does not part from its matrix. Give cemented, with "
-         "'Run/Driver' = 'buckling' also sliding, or 'Layer/Representation' = "
-         "'grains'."});
-  if (m.interface == "sliding" &&
-      (p.layer.representation == "grains" || p.run.driver != "buckling"))
-    findings.push_back(
-        {{"Matrix/Interface", "Layer/Representation", "Run/Driver"},
-         "only the buckling driver, on a layer of finite elements, has a contact that "
-         "slides and does not open. Give cemented, or frictionless to a layer of "
-         "grains."});
+  if (p.layer.representation == "grains" &&
+      (m.interface == "sliding" || m.interface == "frictional"))
+    findings.push_back({{"Matrix/Interface", "Layer/Representation"},
+                        "a layer of grains is cemented to its matrix, or in frictionless "
+                        "contact. Give one of these, or 'Layer/Representation' = "
+                        "'continuum'."});
   if (m.cell_aspect > 1. && (p.layer.representation == "grains"))
     findings.push_back({{"Matrix/Cell aspect ratio", "Layer/Representation"},
                         "beside grains cells are as wide as high. Give 1."});
@@ -411,6 +405,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_bridging(p, findings);
   check_run(p, findings);
   check_materials(p, findings);
+  if (p.has("layer"))
+    check_solid_scene(p, findings);
   if (p.has("layer") && p.run.driver == "buckling")
     check_buckling(p, findings);
   if (p.has("layer") && p.has("fractures"))

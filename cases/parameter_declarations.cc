@@ -7,26 +7,6 @@ namespace antiform::cases
 {
 namespace
 {
-/// Of finite elements in layer and matrix; @p bare: there is no matrix.
-void declare_mesh(MatrixParameters &matrix, const bool bare, Declarations &entries)
-{
-  entries.number("Cell size ratio", matrix.cell_size,
-                 "Size of the cells in and near the layer over the mean grain diameter "
-                 "[-].",
-                 Number::above(0.));
-  if (!bare)
-    entries.number(
-        "Largest cell ratio", matrix.largest_cell,
-        "Height of the cells away from the layer over the mean grain diameter [-].",
-        Number::above(0.));
-  entries.number("Cell aspect ratio", matrix.cell_aspect,
-                 "Width of the columns of cells over the size of the cells near the "
-                 "layer; more than 1 only without grains [-].",
-                 Number::at_least(1.));
-  entries.whole("Element degree", matrix.element_degree,
-                "Polynomial degree of the finite elements [-].", Number::between(1, 2));
-}
-
 void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
 {
   entries.enter("Matrix");
@@ -65,8 +45,15 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
       "roller|fixed");
   entries.choice("Interface", matrix.interface,
                  "Contact of layer and matrix: cemented, sliding (no shear, does not "
-                 "open; buckling driver), or frictionless (no shear, may open; grains).",
-                 "cemented|sliding|frictionless");
+                 "open), frictional (Coulomb with cohesion, may open), frictionless (no "
+                 "shear, may open). Of finite elements: the buckling driver knows the "
+                 "first two, the static driver all; of grains: cemented or frictionless.",
+                 "cemented|sliding|frictional|frictionless");
+  entries.number("Interface friction", matrix.friction,
+                 "mu of a frictional interface [-].", Number::at_least(0.));
+  entries.number("Interface cohesion", matrix.interface_cohesion,
+                 "c of a frictional interface [Pa].",
+                 Number::at_least(0.));
   entries.choice("Join", matrix.join, "How grains and mesh meet.", "bridging domain");
   entries.number(
       "Mesh modulus ratio", matrix.mesh_modulus_ratio,
@@ -83,39 +70,6 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
                "where strengths are given.");
   declare_strengths(matrix.tensile_strength, matrix.cohesion, matrix.tan_friction,
                     matrix.residual_friction, entries);
-  entries.leave();
-}
-
-void declare(const std::string &section,
-             MaterialParameters &material,
-             Declarations &entries)
-{
-  entries.enter(section);
-  entries.choice("Law", material.law,
-                 "elastic (Hooke; neo-Hookean at finite strain), St Venant-Kirchhoff "
-                 "(finite strain; soft under strong compression), Mohr-Coulomb and "
-                 "Drucker-Prager (elastic, perfectly plastic), Maxwell (viscous in "
-                 "shear). At finite strain the last three are for large rotation and "
-                 "strains of some percents. Other than elastic: static driver.",
-                 "elastic|St Venant-Kirchhoff|Mohr-Coulomb|Drucker-Prager|Maxwell");
-  entries.number(
-      "Cohesion", material.cohesion,
-      "c of Mohr-Coulomb and Drucker-Prager, 2 c cos phi / (1 - sin phi) being "
-      "the UCS [Pa].",
-      Number::at_least(0.));
-  entries.angle("Friction angle", material.tan_friction, "phi [degrees].");
-  entries.angle("Dilation angle", material.tan_dilation,
-                "psi, up to phi; with psi = phi flow is associated [degrees].");
-  entries.number("Tensile strength", material.tensile_strength,
-                 "Cut-off of Mohr-Coulomb, up to c cot phi; 0: none [Pa].",
-                 Number::at_least(0.));
-  entries.choice("Match", material.match,
-                 "Where the cone of Drucker-Prager meets Mohr-Coulomb: plane strain (of "
-                 "equal collapse with psi = phi, or psi = 0), outer (triaxial "
-                 "compression), inner (extension).",
-                 "plane strain|outer|inner");
-  entries.number("Viscosity", material.viscosity, "eta of Maxwell in shear [Pa s].",
-                 Number::above(0.));
   entries.leave();
 }
 
@@ -165,14 +119,16 @@ void declare(BridgingParameters &bridging, Declarations &entries)
   entries.leave();
 }
 
-void declare(FoundationParameters &foundation, Declarations &entries)
+void declare(SurfacePressureParameters &surface, Declarations &entries)
 {
-  entries.enter("Foundation");
-  entries.number(
-      "Stiffness ratio", foundation.stiffness_ratio,
-      "k_w h/E0, stiffness of the elastic (Winkler) foundation under the base over "
-      "that of the matrix [-].",
-      Number::above(0.));
+  entries.enter("Surface pressure");
+  entries.number("Pressure", surface.pressure,
+                 "Normal to the top of the section, positive inward [Pa].",
+                 Number::at_least(0.));
+  entries.number("Overburden ratio", surface.overburden_ratio,
+                 "Thickness over h of further cover that is not part of the section: its "
+                 "weight under gravity adds to the pressure [-].",
+                 Number::at_least(0.));
   entries.leave();
 }
 
@@ -197,15 +153,19 @@ void declare(WallsParameters &walls, Declarations &entries)
   entries.leave();
 }
 
-void declare_confinement(ConfinementParameters &confinement,
-                         const std::string &what,
-                         Declarations &entries)
+void declare_pressure(ConfinementParameters &confinement,
+                      const std::string &what,
+                      Declarations &entries)
 {
   entries.number("Pressure", confinement.pressure,
                  "Confinement that " + what +
                      " on the sides of a specimen; it comes up on all four sides before "
                      "shortening begins [Pa].",
                  Number::above(0.));
+}
+
+void declare_control(ConfinementParameters &confinement, Declarations &entries)
+{
   entries.number("Gain", confinement.gain,
                  "beta, share of the error in a wall's pressure that a step takes away "
                  "[-].",
@@ -219,14 +179,22 @@ void declare_confinement(ConfinementParameters &confinement,
 void declare(ServoWallsParameters &servo, Declarations &entries)
 {
   entries.enter("Servo walls");
-  declare_confinement(servo, "rigid frictionless walls keep", entries);
+  declare_pressure(servo, "rigid frictionless walls keep", entries);
+  declare_control(servo, entries);
   entries.leave();
 }
 
-void declare(MembraneParameters &membrane, Declarations &entries)
+/// @p bare: around a layer of finite elements, which it follows exactly.
+void declare(MembraneParameters &membrane, const bool bare, Declarations &entries)
 {
   entries.enter("Membrane");
-  declare_confinement(membrane, "a flexible membrane puts", entries);
+  declare_pressure(membrane, "a flexible membrane puts", entries);
+  if (bare)
+  {
+    entries.leave();
+    return;
+  }
+  declare_control(membrane, entries);
   entries.number("Reach ratio", membrane.reach,
                  "Radius over the mean grain diameter of the ball that cannot pass "
                  "between two neighbours of the membrane; a smaller one follows notches "
@@ -287,6 +255,10 @@ void declare(RunParameters &run, Declarations &entries)
                  "Static driver: time in which the section is shortened, for viscous "
                  "materials [s].",
                  Number::at_least(0.));
+  entries.choice("Path", run.path,
+                 "Static driver: even load steps, or by arc length, which follows the "
+                 "section past limit points, where it snaps.",
+                 "load steps|arc length");
   entries.whole("Modes", run.modes,
                 "Buckling driver: how many of the lowest loads to find [-].",
                 Number::between(1., 20.));
@@ -325,6 +297,7 @@ const std::vector<std::string> &all_components()
                                                  "beds",
                                                  "matrix",
                                                  "foundation",
+                                                 "absorbing boundary",
                                                  "surface pressure",
                                                  "gravity",
                                                  "walls",
@@ -343,11 +316,12 @@ const std::vector<Section> &all_sections()
       {"Layer", "component layer"},
       {"Beds", "component beds"},
       {"Matrix", "component matrix; of a layer of finite elements without it Cell size "
-                 "ratio, Cell aspect ratio and Element degree"},
+                 "ratio, Cell aspect ratio, Element degree and refinement"},
       {"Layer material", "the layer is continuum"},
       {"Matrix material", "component matrix, which is continuum"},
       {"Bridging domain", "the layer is grains and the matrix is continuum"},
       {"Foundation", "component foundation"},
+      {"Absorbing boundary", "component absorbing boundary"},
       {"Surface pressure", "component surface pressure"},
       {"Gravity", "component gravity"},
       {"Walls", "component walls"},
@@ -386,9 +360,9 @@ void declare_parameters(Parameters &p,
   entries.text("Title", p.title, "What the run is called in its output.");
   entries.list(
       "Components", p.components,
-      "What exists in the scene, a list: layer, beds, matrix, foundation, surface "
-      "pressure, gravity, walls, servo walls, membrane, fractures, damping, "
-      "measurement circles; "
+      "What exists in the scene, a list: layer, beds, matrix, foundation, absorbing "
+      "boundary, surface pressure, gravity, walls, servo walls, membrane, fractures, "
+      "damping, measurement circles; "
       "calibration for 'antiform calibrate'. Only their sections are read.");
   for (const std::string &section : sections)
   {
@@ -406,10 +380,10 @@ void declare_parameters(Parameters &p,
       declare(p.bridging, entries);
     else if (section == "Foundation")
       declare(p.foundation, entries);
+    else if (section == "Absorbing boundary")
+      declare(p.absorbing_boundary, entries);
     else if (section == "Surface pressure")
-      declare_one(section, "Pressure", p.surface_pressure.pressure,
-                  "Normal to the top of the section, positive inward [Pa].",
-                  Number::at_least(0.), entries);
+      declare(p.surface_pressure, entries);
     else if (section == "Gravity")
       declare_one(section, "Acceleration", p.gravity.acceleration, "Downward [m/s^2].",
                   Number::above(0.).up_to(1e3), entries);
@@ -418,7 +392,7 @@ void declare_parameters(Parameters &p,
     else if (section == "Servo walls")
       declare(p.servo_walls, entries);
     else if (section == "Membrane")
-      declare(p.membrane, entries);
+      declare(p.membrane, p.is_bare_mesh(), entries);
     else if (section == "Fractures")
       declare(p.fractures, entries);
     else if (section == "Damping")

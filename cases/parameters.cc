@@ -18,7 +18,6 @@ namespace
 const std::map<std::string, std::vector<std::string>> planned = {
     {"Layer/Representation", {"manifold", "adaptive"}},
     {"Matrix/Representation", {"manifold", "adaptive"}},
-    {"Matrix/Interface", {"frictional"}},
     {"Matrix/Join", {"surface interface"}}};
 
 std::vector<std::string> names_of(const std::vector<Section> &sections)

@@ -86,7 +86,9 @@ struct MatrixParameters
   double burial_depth_ratio = 3.;           ///< H/h: cover above the crest
   double base_depth_ratio = 3.;             ///< matrix below the layer over h
   std::string base = "roller";              ///< roller | fixed | foundation via component
-  std::string interface = "cemented";       ///< cemented | sliding | frictionless
+  std::string interface = "cemented"; ///< cemented | sliding | frictional | frictionless
+  double friction = 0.6;              ///< mu of a frictional interface [-]
+  double interface_cohesion = 0.;     ///< c of a frictional interface [Pa]
   std::string join = "bridging domain";     ///< of grains and mesh: bridging domain
   double mesh_modulus_ratio = 1.; ///< mesh moduli over those of the matrix grains
   // mesh
@@ -94,6 +96,10 @@ struct MatrixParameters
   double largest_cell = 6.; ///< rows away from the layer, over mean grain diameter
   double cell_aspect = 1.;  ///< width of the columns over the size of the cells
   int element_degree = 1;   ///< 1 or 2
+  int cover_rows = 0;       ///< of cells in the cover; 0: by the size of the cells
+  int refinement_rounds = 0;       ///< buckling driver
+  double refinement_share = 0.5;   ///< of the estimated error, in the cells to refine [-]
+  double contact_stiffness = 100.; ///< of faces that may part, over the cells' beside [-]
   // grains
   double tile_size = 24.; ///< period of the tile over mean grain diameter
   bool breakable = false;
@@ -130,11 +136,23 @@ struct BridgingParameters
 struct FoundationParameters
 {
   double stiffness_ratio = 0.13; ///< k_w h/E0 [-]
+  double stiffness = 0.;         ///< k_w [Pa/m]; 0: from the ratio
+  double shear_ratio = 0.;       ///< G_p/(k_w h^2), of Pasternak's shear layer [-]
+  std::string faces = "base";    ///< base | top | base and top
+  bool lifts_off = false;        ///< pushes only
+
+};
+
+/// Where waves leave the section.
+struct AbsorbingBoundaryParameters
+{
+  std::string faces = "base"; ///< base | top | base and top
 };
 
 struct SurfacePressureParameters
 {
-  double pressure = 0.; ///< [Pa]
+  double pressure = 0.;         ///< [Pa]
+  double overburden_ratio = 0.; ///< rock on top that is not part of the section, over h
 };
 
 struct GravityParameters
@@ -215,6 +233,7 @@ struct RunParameters
   int modes = 4;                    ///< buckling driver
   std::string strain = "small";     ///< small | finite; static driver
   double duration = 0.;             ///< of the shortening, for laws with time [s]
+  std::string path = "load steps";  ///< load steps | arc length; static driver
 
   /// Whether the scene steps in time.
   bool steps_in_time() const { return driver != "static" && driver != "buckling"; }
@@ -268,6 +287,7 @@ struct Parameters
   MaterialParameters layer_material, matrix_material;
   BridgingParameters bridging;
   FoundationParameters foundation;
+  AbsorbingBoundaryParameters absorbing_boundary;
   SurfacePressureParameters surface_pressure;
   GravityParameters gravity;
   WallsParameters walls;
@@ -311,7 +331,10 @@ struct Parameters
   {
     return has("matrix") && matrix.representation == "continuum";
   }
-  /// The static driver has more to solve than a linear elastic body: a law, large strain.
+  /// Layer and matrix are finite elements that slide on one another, or may part.
+  bool has_mesh_contact() const;
+  /// The static driver has more to solve than a linear elastic body: a law, large strain,
+  /// contact.
   bool is_nonlinear() const;
   /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
   bool is_bridged() const;
@@ -323,6 +346,15 @@ struct Parameters
   double section_length() const; ///< straight ends included [m]
   double grain_diameter() const; ///< mean [m]
   double matrix_modulus() const; ///< E0 [Pa]
+  bool has_foundation_under(const std::string &face) const; ///< base or top
+  bool is_absorbing(const std::string &face) const;         ///< base or top
+  double foundation_stiffness() const;                      ///< k_w [Pa/m]
+  double foundation_shear() const;     ///< G_p [Pa m]
+  /// Bulk densities of layer and matrix where they are not grains [kg/m^3].
+  double layer_density() const;
+  double matrix_density() const;
+  /// On the top of the section, with the overburden that is not part of it [Pa].
+  double pressure_on_top() const;
 };
 
 /// Read a deck (with its includes) and the `--set "Section/Entry=value"` overrides.

@@ -190,7 +190,7 @@ std::vector<double> external_forces(const Scene &scene)
           (scene.bridging ? scene.bridging->weight().grains(grains.reference(i)) : 1.);
   if (!scene.mesh && p.has("surface pressure"))
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
-      force[i] -= p.surface_pressure.pressure * width;
+      force[i] -= p.pressure_on_top() * width;
   return force;
 }
 
@@ -252,12 +252,12 @@ Prestress prestress_of(const Scene &scene)
   Prestress prestress;
   prestress.surface = scene.geometry.surface();
   if (p.has("surface pressure"))
-    prestress.surface_pressure = p.surface_pressure.pressure;
+    prestress.surface_pressure = p.pressure_on_top();
   if (p.has("gravity"))
     prestress.unit_weight =
         p.gravity.acceleration * (scene.grains && scene.grains->matrix
                                       ? scene.grains->matrix->bulk_density
-                                      : 0.84 * p.matrix.grain_density);
+                                      : p.matrix_density());
   return prestress;
 }
 

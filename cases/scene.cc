@@ -4,9 +4,10 @@
 #include "cases/mesh_strips.h"
 #include "cases/scene_components.h"
 #include "cases/section_contacts.h"
+#include "cases/section_foundation.h"
+#include "cases/section_materials.h"
 
 #include "continuum/errors.h"
-#include "continuum/foundation.h"
 #include "continuum/section_mesh.h"
 #include "discrete/locked_in.h"
 
@@ -34,22 +35,15 @@ OverlapWeight overlap_weight(const Parameters &p, const SectionGeometry &geometr
   return weight;
 }
 
-continuum::ElasticMaterial matrix_material(const Parameters &p,
-                                           const GrainSection *grains)
+/// The mesh beside matrix grains has their response.
+continuum::ElasticMaterial matrix_material(const Parameters &p, const GrainSection &grains)
 {
-  if (grains == nullptr)
-  {
-    // The bulk density of a packing: solid fraction about 0.84.
-    return continuum::ElasticMaterial::isotropic(p.matrix_modulus(),
-                                                 p.matrix.poisson_ratio,
-                                                 0.84 * p.matrix.grain_density, "matrix");
-  }
   continuum::ElasticMaterial material;
-  material.stiffness = grains->matrix->response.stiffness;
+  material.stiffness = grains.matrix->response.stiffness;
   for (auto &row : material.stiffness)
     for (double &c : row)
       c *= p.matrix.mesh_modulus_ratio;
-  material.density = grains->matrix->bulk_density;
+  material.density = grains.matrix->bulk_density;
   material.name = "matrix";
   return material;
 }
@@ -58,11 +52,9 @@ void build_mesh(Scene &scene, const MPI_Comm communicator)
 {
   const Parameters &p = scene.parameters;
   scene.triangulation = make_mesh(p, scene.geometry, communicator);
-  const GrainSection *const grains = scene.grains ? &*scene.grains : nullptr;
-  std::vector<continuum::ElasticMaterial> materials{matrix_material(p, grains)};
-  materials.push_back(
-      continuum::ElasticMaterial::isotropic(p.layer.young_modulus, p.layer.poisson_ratio,
-                                            0.84 * p.layer.grain_density, "layer"));
+  std::vector<continuum::ElasticMaterial> materials = mesh_materials(p);
+  if (scene.grains)
+    materials[matrix_material_id] = matrix_material(p, *scene.grains);
   std::function<double(const dealii::Point<2> &)> weight;
   if (p.is_bridged())
     weight = [w = overlap_weight(p, scene.geometry)](const dealii::Point<2> &x) {
@@ -97,7 +89,8 @@ void support_mesh(Scene &scene)
       scene.mesh->prescribe(local, 0, layer_share);
     else if (p.has("walls") && horizontal && x[0] > g.x_max() - small)
       scene.mesh->prescribe(local, 1, layer_share);
-    else if (p.has("matrix") && !p.has("foundation") && x[1] < g.base() + small &&
+    else if (p.has("matrix") && !p.has_foundation_under("base") &&
+             !p.is_absorbing("base") && x[1] < g.base() + small &&
              (!horizontal || p.matrix.base == "fixed"))
       scene.mesh->prescribe(local, -1);
   }
@@ -191,11 +184,8 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
     support_mesh(*scene);
     if (p.has("foundation"))
     {
-      const double stiffness =
-          p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness;
       foundation = std::make_unique<MeshFoundation>(
-          *scene->mesh, continuum::winkler_foundation(
-                            *scene->solid, {continuum::boundary::bottom}, stiffness));
+          *scene->mesh, section_foundation(p, *scene->solid));
       foundation_rows = foundation->absolute_row_sums();
     }
   }

@@ -5,9 +5,11 @@
 #include "cases/prestress.h"
 #include "cases/scene.h"
 #include "cases/section_contacts.h"
+#include "cases/section_foundation.h"
 
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
+#include "coupling/absorbing_component.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +37,7 @@ enum Rank
   rank_base = 90,
   rank_constrained = 95,
   rank_damping = 96,
+  rank_absorbing = 97, // after the mesh has been kicked, with or without damping
   rank_motion = 50
 };
 
@@ -62,8 +65,7 @@ std::vector<GrainBase::Support> base_supports(const Scene &scene)
   std::vector<GrainBase::Support> supports;
   if (!p.has("matrix") || p.matrix.representation != "grains")
     return supports;
-  const double spring = p.has("foundation") ? p.foundation.stiffness_ratio *
-                                                  p.matrix_modulus() / p.layer.thickness
+  const double spring = p.has("foundation") ? p.foundation_stiffness()
                                             : std::numeric_limits<double>::infinity();
   for (const auto &[grain, width] : base_grains(*scene.grains, scene.geometry))
     supports.push_back({grain, spring * width});
@@ -126,7 +128,7 @@ void add_loads(Scene &scene)
       add_to_mesh(continuum::gravity(*scene.solid, down), "gravity");
     if (p.has("surface pressure"))
       add_to_mesh(continuum::pressure(*scene.solid, {continuum::boundary::top},
-                                      p.surface_pressure.pressure),
+                                      p.pressure_on_top()),
                   "surface pressure");
   }
   const InstalledPrestress installed = install_prestress(scene, all);
@@ -148,7 +150,7 @@ void add_loads(Scene &scene)
   {
     std::vector<GrainLoad> chain;
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
-      chain.push_back({i, {0., -p.surface_pressure.pressure * width}, 0.});
+      chain.push_back({i, {0., -p.pressure_on_top() * width}, 0.});
     add(std::make_unique<GrainLoads>(state, chain), "surface pressure");
   }
   add(std::make_unique<GrainLoads>(state, installed.grain_loads, true), "prestress");
@@ -295,6 +297,13 @@ void add_common_components(Scene &scene)
              reason_for(p, "mesh"))
         .damping = mesh_damping;
   }
+  if (p.has("absorbing boundary"))
+    simulation.add(
+        std::make_unique<AbsorbingBoundary>(
+            *mesh, continuum::absorbing_dashpots(*scene.solid, absorbing_faces(p)),
+            domain),
+        {Stage::damp, Stage::kick, Stage::drift}, rank_absorbing, "absorbing boundary",
+        reason_for(p, "absorbing boundary"));
   if (domain != nullptr)
     simulation.add(std::make_unique<Bridging>(*domain, *grains, *mesh),
                    {Stage::constrain}, 0, "bridging domain",

@@ -105,6 +105,21 @@ double predict_shortening(const Parameters &p, const SectionGeometry &g)
   return std::min(multiple * predict_strain_at_peak(p, g), p.run.longest_shortening);
 }
 
+/// Of the implicit drivers: direct factors of plane meshes and what is done with them,
+/// measured on meshes of 5e3 to 2e5 dofs [s].
+double predict_solves(const Parameters &p, const double dofs)
+{
+  if (p.run.driver == "buckling")
+  {
+    // Each round of refinement about doubles the dofs.
+    const double all = dofs * (std::exp2(p.matrix.refinement_rounds + 1.) - 1.);
+    return 0.5 + all * (8e-5 + 1.5e-5 * (p.run.modes - 1.));
+  }
+  const double steps = p.has("walls") ? p.run.load_steps : 1.;
+  return p.is_nonlinear() ? 0.2 + 3. * steps * 5e-5 * dofs
+                          : 0.2 + dofs * (4e-5 + 2e-5 * steps);
+}
+
 double predict_memory(const Parameters &p, const Sizes &sizes)
 {
   // Bytes: 600 a grain, 150 a joint; a supernodal factor of the bonded assembly takes
@@ -151,6 +166,11 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
       sizes.steps += 2. * transit * p.confinement()->ramp;
     sizes.core_seconds = sizes.steps * (sizes.grains / grain_steps_per_second +
                                         sizes.dofs / dof_steps_per_second);
+  }
+  else if (!p.run.steps_in_time())
+  {
+    sizes.steps = p.run.driver == "static" && p.has("walls") ? p.run.load_steps : 1.;
+    sizes.core_seconds = predict_solves(p, sizes.dofs);
   }
   sizes.memory = predict_memory(p, sizes);
   return sizes;

@@ -83,16 +83,148 @@ void check_buckling(const Parameters &p, Findings &findings)
   // square ones, 5.0, 1.1, 0.25 % with 3, 6, 12 in the layer's thickness.
   const double length =
       p.matrix.cell_aspect * p.matrix.cell_size * p.grain_diameter() / p.layer.thickness;
-  if (p.matrix.element_degree == 1 && 0.4 * length * length > 0.02)
+  if (p.matrix.element_degree == 1 && p.matrix.refinement_rounds == 0 &&
+      0.4 * length * length > 0.02)
     find({"Matrix/Element degree", "Matrix/Cell aspect ratio", "Matrix/Cell size ratio"},
          "bilinear cells " + short_text(length) + " h long are some " +
              short_text(40. * length * length) +
-             " % too stiff in bending, and so is their buckling load. Give 2.");
+             " % too stiff in bending, and so is their buckling load. Give 2, or "
+             "'Matrix/Refinement rounds'.");
   for (const std::string load : {"gravity", "surface pressure"})
     if (p.has(load))
       find({"Components", "Run/Driver"},
            "the buckling driver knows one load, the shortening by the walls, and "
            "ignores none. Remove " +
                load + " from 'Components'.");
+}
+
+namespace
+{
+/// Contact of layer and matrix, where both are finite elements.
+void check_interface(const Parameters &p, Findings &findings)
+{
+  const std::string &word = p.matrix.interface;
+  const bool buckles = p.run.driver == "buckling";
+  if (!p.has_mesh_contact() || p.run.driver == "static" || (buckles && word == "sliding"))
+    return;
+  findings.push_back({{"Matrix/Interface", "Run/Driver", "Layer/Representation"},
+                      "the " + p.run.driver + " driver knows of finite elements that are " +
+                          (buckles ? "cemented or sliding" : "cemented") +
+                          ". Give that, or 'Run/Driver' = 'static'."});
+}
+
+void check_foundation(const Parameters &p, Findings &findings)
+{
+  const FoundationParameters &f = p.foundation;
+  const bool on_grains = p.has("matrix") && p.matrix.representation == "grains";
+  if (!p.has("matrix") && f.stiffness == 0.)
+    findings.push_back({{"Foundation/Stiffness", "Components"},
+                        "without a matrix there is no modulus that the ratio could "
+                        "multiply. Give the stiffness in Pa/m."});
+  if (on_grains && (f.shear_ratio > 0. || f.faces != "base"))
+    findings.push_back({{f.shear_ratio > 0. ? "Foundation/Shear ratio"
+                                            : "Foundation/Faces",
+                         "Matrix/Representation"},
+                        "under a base of grains there are springs only. Give no shear "
+                        "and the base, or 'Matrix/Representation' = 'continuum'."});
+  if (f.lifts_off && p.run.driver != "static")
+    findings.push_back({{"Foundation/Lifts off", "Run/Driver"},
+                        "only the static driver knows a foundation that pushes and does "
+                        "not pull. Give false, or 'Run/Driver' = 'static'."});
+  if (f.lifts_off && f.shear_ratio > 0.)
+    findings.push_back({{"Foundation/Shear ratio", "Foundation/Lifts off"},
+                        "a shear layer holds on to the section; from springs alone it "
+                        "can part. Give 0."});
+}
+
+void check_absorbing_boundary(const Parameters &p, Findings &findings)
+{
+  if (p.run.driver != "dynamic" || !p.has_matrix_mesh())
+    findings.push_back({{"Components", "Run/Driver", "Matrix/Representation"},
+                        "an absorbing boundary lets the waves of the dynamic driver out "
+                        "of a matrix of finite elements. Remove it, or give 'Run/Driver' "
+                        "= 'dynamic' and 'Matrix/Representation' = 'continuum'."});
+  for (const std::string face : {"base", "top"})
+    if (p.has_foundation_under(face) && p.is_absorbing(face))
+      findings.push_back({{"Absorbing boundary/Faces", "Foundation/Faces"},
+                          "the " + face +
+                              " is on a foundation, which throws waves back. Give one of "
+                              "the two another face."});
+}
+
+/// Rows of a cover that has none of its own: a cell that is cut down to a sliver is a
+/// matter to decide, not to happen.
+void check_thin_strips(const Parameters &p, Findings &findings)
+{
+  if (!p.has_layer_mesh() || !p.has_matrix_mesh())
+    return;
+  const double cell = p.matrix.cell_size * p.grain_diameter();
+  const auto check = [&](const std::string &what, const double ratio,
+                         const std::string &entry, const std::string &rows)
+  {
+    const double height = ratio * p.layer.thickness;
+    if (height > 0. && height < 0.999 * cell)
+      findings.push_back({{entry, "Matrix/Cell size ratio", "Layer/Grains across"},
+                          "the " + what + " of " + short_text(height) +
+                              " m is thinner than a cell of " + short_text(cell) +
+                              " m. Give " + rows + "'Matrix/Cell size ratio' of " +
+                              short_text(height / p.grain_diameter()) + " or less."});
+  };
+  if (p.matrix.cover_rows == 0)
+    check("cover", p.matrix.burial_depth_ratio, "Matrix/Burial depth ratio",
+          "'Matrix/Cover rows' = 1 or more, or ");
+  check("base", p.matrix.base_depth_ratio, "Matrix/Base depth ratio", "");
+}
+} // namespace
+
+void check_solid_scene(const Parameters &p, Findings &findings)
+{
+  check_interface(p, findings);
+  check_thin_strips(p, findings);
+  if (p.has("foundation"))
+    check_foundation(p, findings);
+  if (p.has("absorbing boundary"))
+    check_absorbing_boundary(p, findings);
+  if (p.matrix.cover_rows > 0 && p.has("matrix") && !p.has_layer_mesh())
+    findings.push_back({{"Matrix/Cover rows", "Layer/Representation"},
+                        "rows of their own are for a cover on a layer of finite "
+                        "elements. Give 0."});
+  if (p.matrix.refinement_rounds > 0 && p.run.driver != "buckling")
+    findings.push_back({{"Matrix/Refinement rounds", "Run/Driver"},
+                        "only the buckling driver refines its cells. Give 0."});
+  if (p.matrix.refinement_rounds > 0 && p.has("foundation") &&
+      p.foundation.shear_ratio > 0.)
+    findings.push_back({{"Matrix/Refinement rounds", "Foundation/Shear ratio"},
+                        "the error indicator does not know a shear layer. Give 0 rounds, "
+                        "or no shear."});
+  if (p.run.path == "arc length")
+  {
+    if (p.run.driver != "static")
+      findings.push_back({{"Run/Path", "Run/Driver"},
+                          "only the static driver follows a path. Give load steps."});
+    if (p.run.duration > 0.)
+      findings.push_back({{"Run/Path", "Run/Duration"},
+                          "a path past limit points has no time. Give load steps, or a "
+                          "duration of 0 and no viscous law."});
+  }
+  if (p.surface_pressure.overburden_ratio > 0. && p.has("surface pressure") &&
+      !p.has("gravity"))
+    findings.push_back({{"Surface pressure/Overburden ratio", "Components"},
+                        "an overburden weighs nothing without gravity. Add gravity to "
+                        "'Components', or give its pressure."});
+}
+
+/// A membrane around a layer of finite elements is a pressure that follows its faces.
+void check_membrane_of_mesh(const Parameters &p, Findings &findings)
+{
+  if (p.run.driver != "static" || p.run.strain != "finite" || !p.has("walls"))
+    findings.push_back({{"Components", "Run/Driver", "Run/Strain"},
+                        "a membrane around a layer of finite elements is a pressure that "
+                        "follows its faces: it needs walls, 'Run/Driver' = 'static' and "
+                        "'Run/Strain' = 'finite'."});
+  if (p.has("servo walls") || p.has("surface pressure") || p.has("foundation"))
+    findings.push_back({{"Components"},
+                        "the membrane presses on the faces of the layer. Remove servo "
+                        "walls, surface pressure and foundation."});
 }
 } // namespace antiform::cases

@@ -18,8 +18,8 @@ continuum::DirichletValues section_supports(const Parameters &p,
   const auto constant = [](const double value)
   { return [value](const dealii::Point<2> &) { return value; }; };
   continuum::DirichletValues values;
-  if (!p.has("matrix")) // a bare layer is free to fold: one corner keeps it in place
-  {
+  if (!p.has("matrix") && !p.has_foundation_under("base"))
+  { // a bare layer is free to fold: one corner keeps it in place
     const double small = 1e-9 * g.length();
     for (const auto dof : solid.locally_owned())
       if (const dealii::Point<2> x = solid.support_point(dof);
@@ -27,7 +27,7 @@ continuum::DirichletValues section_supports(const Parameters &p,
           x[1] < g.layer_bottom(g.x_min()) + small)
         values[dof] = 0.;
   }
-  else if (!p.has("foundation"))
+  else if (p.has("matrix") && !p.has_foundation_under("base"))
   {
     continuum::prescribe(solid, continuum::boundary::bottom, 1, constant(0.), values);
     if (p.matrix.base == "fixed")

@@ -4,11 +4,11 @@
 #include "cases/nonlinear_run.h"
 #include "cases/prestress.h"
 #include "cases/scene.h"
+#include "cases/section_foundation.h"
 #include "cases/small_strain.h"
 #include "cases/solid_run.h"
 #include "cases/summary.h"
 #include "continuum/errors.h"
-#include "continuum/foundation.h"
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
 #include "continuum/static_solver.h"
@@ -46,11 +46,9 @@ int run_static(const Parameters &p,
   }
   if (p.has("surface pressure"))
     load += continuum::pressure(solid, {continuum::boundary::top},
-                                p.surface_pressure.pressure);
+                                p.pressure_on_top());
   if (p.has("foundation"))
-    solid.add_to_stiffness(continuum::winkler_foundation(
-        solid, {continuum::boundary::bottom},
-        p.foundation.stiffness_ratio * p.matrix_modulus() / p.layer.thickness));
+    solid.add_to_stiffness(section_foundation(p, solid));
 
   if (p.has("gravity") || p.has("surface pressure"))
     load += install_prestress(*scene, load).mesh_force;

@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{
             "WordThatDoesNotExist",
             {indented("Matrix", "set Interface = glued")},
-            {"bad.prm:3: ", "'Matrix/Interface' = 'glued'", "cemented or sliding or frictionless"}},
+            {"bad.prm:3: ", "'Matrix/Interface' = 'glued'", "cemented or sliding or frictional or frictionless"}},
         Refusal{"GrainsWithTheStaticDriver",
                 {indented("Run", "set Driver = static\n  set End shortening = 1e-3")},
                 {"bad.prm:3: ", "'Run/Driver' = 'static'", "quasi-static"}},

@@ -148,8 +148,12 @@ TEST(BucklingRun, RefusesWhatTheLinearTheoryLeavesOut)
        {"'Layer/Shape' = 'cosine'", "straight", "Remove gravity"}},
       {{"Layer/Representation=grains"},
        {"'Run/Driver' = 'buckling'", "'Matrix/Cell aspect ratio'"}},
-      {{"Run/Driver=static", "Run/End shortening=1e-3"},
-       {"'Matrix/Interface' = 'sliding'", "cemented"}},
+      {{"Matrix/Interface=frictional"},
+       {"'Matrix/Interface' = 'frictional'", "cemented or sliding", "'static'"}},
+      {{"Components=layer, matrix, walls, foundation", "Foundation/Lifts off=true"},
+       {"'Foundation/Lifts off' = 'true'", "'Run/Driver' = 'static'"}},
+      {{"Matrix/Burial depth ratio=0.1"},
+       {"the cover of 1 m is thinner than a cell of 2.5 m", "'Matrix/Cover rows' = 1"}},
       {{"Matrix/Element degree=1"}, {"'Matrix/Element degree' = '1'", "Give 2"}},
       {{"Components=layer, matrix"}, {"Components", "walls"}}};
   for (const auto &one : cases)

@@ -1,0 +1,153 @@
+#include "cases/buckling_section.h"
+
+#include "cases/mesh_strips.h"
+#include "cases/section_foundation.h"
+#include "cases/section_materials.h"
+#include "cases/solid_run.h"
+#include "continuum/error_indicator.h"
+#include "continuum/refinement.h"
+#include "continuum/sliding_interface.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::cases
+{
+namespace
+{
+constexpr double shortening = 1e-6; // of factor 1; any: linear
+
+bool slides(const Parameters &p)
+{
+  return p.has("matrix") && p.matrix.interface == "sliding";
+}
+} // namespace
+
+BucklingSection::BucklingSection(const Parameters &p, const MPI_Comm communicator)
+    : p_(p)
+    , geometry_(p)
+    , mesh_(make_mesh(p, geometry_, communicator))
+{
+  build();
+}
+
+void BucklingSection::build()
+{
+  solid_ = std::make_unique<continuum::ElasticSolid>(
+      *mesh_, mesh_materials(p_), static_cast<unsigned int>(p_.matrix.element_degree));
+  if (p_.has("foundation"))
+    solid_->add_to_stiffness(section_foundation(p_, *solid_));
+}
+
+/// Mean compression along the layer [Pa], tension negative.
+double BucklingSection::layer_stress(const continuum::Vector &displacement) const
+{
+  double force = 0., area = 0.;
+  for (const auto &cell : solid_->cell_states(displacement))
+    if (cell.material == layer_material_id)
+    {
+      force -= cell.stress[0] * cell.area;
+      area += cell.area;
+    }
+  return dealii::Utilities::MPI::sum(force, communicator()) /
+         dealii::Utilities::MPI::sum(area, communicator());
+}
+
+/// Changes of sign, from column to column, of what the layer moves across on average.
+/// Columns that hardly move do not count.
+unsigned int BucklingSection::half_waves(const continuum::Vector &shape) const
+{
+  const SectionGeometry &g = geometry_;
+  std::vector<double> across(g.n_columns()), number(g.n_columns());
+  std::vector<dealii::types::global_dof_index> dofs(solid_->fe().n_dofs_per_cell());
+  for (const auto &cell : solid_->dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned() && cell->material_id() == layer_material_id)
+    {
+      const auto column = static_cast<std::size_t>(
+          std::floor((cell->center()[0] - g.x_min()) / g.length() * g.n_columns()));
+      cell->get_dof_indices(dofs);
+      for (unsigned int i = 0; i < dofs.size(); ++i)
+        if (solid_->fe().system_to_component_index(i).first == 1)
+        {
+          across[column] += shape(dofs[i]);
+          number[column] += 1.;
+        }
+    }
+  dealii::Utilities::MPI::sum(across, communicator(), across);
+  dealii::Utilities::MPI::sum(number, communicator(), number);
+  double mean = 0., largest = 0., last = 0.; // a bare layer is held at one corner
+  for (std::size_t k = 0; k < across.size(); ++k)
+  {
+    across[k] /= number[k];
+    mean += across[k] / static_cast<double>(across.size());
+  }
+  for (double &u : across)
+  {
+    u -= mean;
+    largest = std::max(largest, std::abs(u));
+  }
+  unsigned int n = 0;
+  for (const double u : across)
+    if (std::abs(u) > 1e-3 * largest)
+    {
+      n += last * u < 0. ? 1 : 0;
+      last = u;
+    }
+  return n;
+}
+
+void BucklingSection::solve(const std::function<bool()> &stop)
+{
+  const std::vector<continuum::Tie> ties =
+      slides(p_) ? continuum::sliding_interfaces(*solid_) : std::vector<continuum::Tie>();
+  const continuum::DofReduction reduction(
+      *solid_, section_supports(p_, geometry_, *solid_, shortening), ties);
+  straight_ = continuum::solve_reduced(*solid_, reduction, solid_->make_vector());
+  straight_.update_ghost_values();
+  const double stress = layer_stress(straight_);
+  shapes_ = continuum::lowest_buckling_modes(
+      *solid_, solid_->geometric_stiffness(straight_), reduction,
+      {static_cast<unsigned int>(p_.run.modes), 1e-9, 200, stop});
+  modes_.clear();
+  for (const continuum::BucklingMode &shape : shapes_)
+    modes_.push_back({shape.load_factor * shortening, shape.load_factor * stress,
+                      half_waves(shape.shape)});
+}
+
+std::vector<double> BucklingSection::indicators() const
+{
+  continuum::Surroundings surroundings;
+  surroundings.displacements = section_supports(p_, geometry_, *solid_, shortening);
+  if (p_.has("foundation"))
+  {
+    surroundings.sprung = foundation_faces(p_);
+    surroundings.spring_stiffness = p_.foundation_stiffness();
+  }
+  surroundings.slides = slides(p_);
+  return continuum::error_indicators(*solid_, straight_, shapes_.front(), surroundings);
+}
+
+double BucklingSection::estimate() const
+{
+  double sum = 0.;
+  for (const double eta : indicators())
+    sum += eta;
+  return dealii::Utilities::MPI::sum(sum, communicator());
+}
+
+bool BucklingSection::refine()
+{
+  const std::vector<double> found = indicators();
+  shapes_.clear();
+  modes_.clear();
+  straight_.reinit(0);
+  solid_.reset();
+  continuum::RefinementOptions options;
+  options.bulk_share = p_.matrix.refinement_share;
+  const bool refined = continuum::refine(*mesh_, found, options);
+  build();
+  return refined;
+}
+} // namespace antiform::cases
