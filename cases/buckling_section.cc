@@ -116,7 +116,8 @@ void BucklingSection::solve(const std::function<bool()> &stop)
                       half_waves(shape.shape)});
 }
 
-std::vector<double> BucklingSection::indicators() const
+std::vector<double>
+BucklingSection::indicators(const continuum::BucklingMode &mode) const
 {
   continuum::Surroundings surroundings;
   surroundings.displacements = section_supports(p_, geometry_, *solid_, shortening);
@@ -126,20 +127,26 @@ std::vector<double> BucklingSection::indicators() const
     surroundings.spring_stiffness = p_.foundation_stiffness();
   }
   surroundings.slides = slides(p_);
-  return continuum::error_indicators(*solid_, straight_, shapes_.front(), surroundings);
+  return continuum::error_indicators(*solid_, straight_, mode, surroundings);
 }
 
 double BucklingSection::estimate() const
 {
   double sum = 0.;
-  for (const double eta : indicators())
+  for (const double eta : indicators(shapes_.front()))
     sum += eta;
   return dealii::Utilities::MPI::sum(sum, communicator());
 }
 
 bool BucklingSection::refine()
 {
-  const std::vector<double> found = indicators();
+  std::vector<double> found = indicators(shapes_.front());
+  for (std::size_t k = 1; k < std::min<std::size_t>(3, shapes_.size()); ++k)
+  {
+    const std::vector<double> more = indicators(shapes_[k]);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      found[i] += more[i];
+  }
   shapes_.clear();
   modes_.clear();
   straight_.reinit(0);

@@ -42,15 +42,16 @@ public:
   /// Estimated relative error of the lowest load times a factor of some 2 to 10
   /// (error_indicator.h) [-].
   double estimate() const;
-  /// Refine the cells with the deck's share of the estimate and build the section anew:
-  /// modes are gone. False: there is nothing to refine.
+  /// Refine the cells with the deck's share of the lowest three modes' estimates (the
+  /// dominant wavelength needs the neighbours) and build the section anew: modes are
+  /// gone. False: there is nothing to refine.
   bool refine();
 
 private:
   void build();
   double layer_stress(const continuum::Vector &displacement) const;
   unsigned int half_waves(const continuum::Vector &shape) const;
-  std::vector<double> indicators() const;
+  std::vector<double> indicators(const continuum::BucklingMode &mode) const;
 
   const Parameters &p_;
   SectionGeometry geometry_;

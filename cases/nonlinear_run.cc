@@ -151,7 +151,13 @@ std::string take_step(const int step,
   }
   catch (const NumericalError &error)
   {
-    return error.what();
+    return (step == 0 ? std::string("before any shortening the section finds no "
+                                    "equilibrium: it does not bear its loads, or nothing "
+                                    "holds it. Give stronger materials ('Matrix "
+                                    "material', 'Layer material'), less load or a "
+                                    "support. ")
+                      : std::string()) +
+           error.what();
   }
   return "";
 }

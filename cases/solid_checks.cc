@@ -131,6 +131,11 @@ void check_foundation(const Parameters &p, Findings &findings)
     findings.push_back({{"Foundation/Lifts off", "Run/Driver"},
                         "only the static driver knows a foundation that pushes and does "
                         "not pull. Give false, or 'Run/Driver' = 'static'."});
+  if (f.lifts_off && !p.has("gravity") && !p.has("surface pressure"))
+    findings.push_back({{"Foundation/Lifts off", "Components"},
+                        "nothing presses the section on a foundation that does not pull: "
+                        "it could float away, a mechanism without stiffness. Add gravity "
+                        "or surface pressure to 'Components', or give false."});
   if (f.lifts_off && f.shear_ratio > 0.)
     findings.push_back({{"Foundation/Shear ratio", "Foundation/Lifts off"},
                         "a shear layer holds on to the section; from springs alone it "

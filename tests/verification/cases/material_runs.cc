@@ -194,3 +194,49 @@ TEST(MaterialRun, RefusesWhatDoesNotGoTogether)
                                                               << outcome.output;
   }
 }
+
+TEST(MaterialRun, ASectionThatDoesNotBearItsLoadsSaysSo)
+{
+  const TemporaryFolder folder;
+  // A layer twelve times as heavy as the mud it lies in sinks.
+  std::ofstream(folder.path("mud.prm")) << R"(set Title      = mud
+set Components = layer, matrix, walls, gravity
+subsection Layer
+  set Representation = continuum
+  set Shape          = cosine
+  set Length ratio   = 16
+  set Grains across  = 4
+  set Grain density  = 30000
+end
+subsection Matrix
+  set Stiffness contrast = 1e3
+  set Element degree     = 2
+  set Cell size ratio    = 2
+  set Cell aspect ratio  = 2
+end
+subsection Matrix material
+  set Law            = Mohr-Coulomb
+  set Cohesion       = 1e3
+  set Friction angle = 0
+end
+subsection Run
+  set Driver         = static
+  set End shortening = 2e-3
+end
+)";
+  const Outcome outcome =
+      run_program("run " + folder.path("mud.prm") + " -o " + folder.path("mud"));
+  EXPECT_EQ(outcome.status, 2) << outcome.output;
+  for (const char *part : {"does not bear its loads", "'Matrix material'"})
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << outcome.output;
+}
+
+TEST(MaterialRun, ASectionThatCouldFloatAwayIsRefused)
+{
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      std::string("check ") + ANTIFORM_SOURCE_DIR +
+      "/cases/burial-depth/upheaval.prm --set \"Components=layer, walls, foundation\"");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("Add gravity"), std::string::npos) << outcome.output;
+}

@@ -135,8 +135,8 @@ TEST(FoundationDeck, ALayerOnHardRockRisesAsTheClosedFormSays)
   ASSERT_GT(rise[i], 24.);
   const double length = std::pow(rise[i] * D / (2.4068e-3 * q), 0.25);
   EXPECT_NEAR(stress[i] * 10. * length * length / (80.763 * D), 1., 0.03) << rise[i];
-  // The base gives way: (4 D/k)^(1/4) = 12 m more at either end, and cells are 40 m wide.
-  EXPECT_NEAR(lifted[i] / length, 1.06, 0.06);
+  // Cells are 40 m wide, 6 % of the length, at either end.
+  EXPECT_NEAR(lifted[i] / length, 1., 0.12);
   EXPECT_EQ(summary.at("effects").at("lift-off").at("active"), true);
 }
 
