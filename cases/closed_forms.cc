@@ -434,8 +434,11 @@ double unit_weight(const Parameters &p)
 
 double load_of_cover(const Parameters &p)
 {
-  if (!p.has("matrix"))
-    return 0.;
+  if (!p.has("matrix")) // a bare layer bears its own
+    return p.pressure_on_top() + (p.has("gravity") ? p.layer_density() *
+                                                         p.gravity.acceleration *
+                                                         p.layer.thickness
+                                                   : 0.);
   const double cover = p.matrix.burial_depth_ratio * p.layer.thickness;
   return p.pressure_on_top() + unit_weight(p) * cover;
 }

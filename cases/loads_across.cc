@@ -34,11 +34,11 @@ void add_arch(const Parameters &p, const SectionGeometry &g, TheorySection &sect
        true});
   if (q == 0.)
   {
-    section.rows.push_back(no_row("cover_load", "load of the cover",
+    section.rows.push_back(no_row("cover_load", "load across the layer",
                                   "neither gravity nor surface pressure in Components"));
     return;
   }
-  section.rows.push_back(figure_row("cover_load", "load of the cover, q", q, "Pa"));
+  section.rows.push_back(figure_row("cover_load", "load across the layer, q", q, "Pa"));
   section.rows.push_back(words_row(
       "arch_grows", "under it, without support below and with guided ends, the arch",
       q < guided ? "grows" : "is pressed down"));
@@ -80,12 +80,15 @@ void add_snap_through(const Parameters &p,
 /// Why a layer of this deck is not lifted from a rigid base; empty: it may be.
 std::string why_no_upheaval(const Parameters &p)
 {
-  if (!p.has("matrix"))
-    return "there is no matrix: the layer rests on nothing";
-  if (p.matrix.interface == "cemented")
+  const bool lifts_off = p.has_foundation_under("base") && p.foundation.lifts_off;
+  if (!p.has("matrix") && !lifts_off)
+    return "the layer rests on nothing that it could leave";
+  if (p.has("matrix") && p.matrix.interface == "cemented")
     return "the contact is cemented: the layer cannot leave its base";
   if (load_of_cover(p) == 0.)
     return "neither gravity nor surface pressure: nothing holds the layer down";
+  if (!p.has("matrix"))
+    return "";
   const double theta = theory::cover_variable(
       p.matrix.burial_depth_ratio, layer_of(p).plane_modulus(),
       theory::plane_modulus(p.matrix_modulus(), p.matrix.poisson_ratio));
@@ -103,7 +106,9 @@ void add_upheaval(const Parameters &p, const SectionGeometry &g, TheorySection &
     const double q = load_of_cover(p);
     const theory::Upheaval up = theory::least_upheaval(layer_of(p), q, g.length());
     // A base that gives way by more than a tenth of the lift is not rigid.
-    const double sinks = q / matrix_sides(p)[1].stiffness(2. * M_PI / up.length);
+    const double sinks =
+        q / (p.has("matrix") ? matrix_sides(p)[1].stiffness(2. * M_PI / up.length)
+                             : p.foundation_stiffness());
     if (up.length > g.length())
       reason = "the lifted length of " + short_text(up.length) +
                " m is longer than the section";

@@ -257,7 +257,8 @@ Prestress prestress_of(const Scene &scene)
     prestress.unit_weight =
         p.gravity.acceleration * (scene.grains && scene.grains->matrix
                                       ? scene.grains->matrix->bulk_density
-                                      : p.matrix_density());
+                                  : p.has("matrix") ? p.matrix_density()
+                                                    : p.layer_density());
   return prestress;
 }
 
