@@ -48,14 +48,24 @@ double dominant_wavelength(const std::vector<Mode> &modes, const double length)
 }
 
 /// What a reader should know before he believes the figures.
-std::vector<std::string>
-doubts(const BucklingSection &section, const std::vector<Mode> &modes, const int wanted)
+std::vector<std::string> doubts(const BucklingSection &section,
+                                const std::vector<Mode> &modes,
+                                const int wanted,
+                                const double last_change)
 {
   std::vector<std::string> texts;
   char text[240];
   const Mode &lowest = modes.front();
   const double columns = section.geometry().n_columns();
   const bool refined = section.parameters().matrix.refinement_rounds > 0;
+  if (refined && std::abs(last_change) > 0.01)
+  {
+    std::snprintf(text, sizeof text,
+                  "the last round of refinement changed the load by %.2g %%: give more "
+                  "'Matrix/Refinement rounds', or smaller cells to begin with",
+                  100. * last_change);
+    texts.push_back(text);
+  }
   if (!refined && (lowest.half_waves == 0 || columns < 6. * lowest.half_waves))
   {
     std::snprintf(text, sizeof text,
@@ -101,7 +111,8 @@ std::string percent(const double ratio)
 void write_modes(const BucklingSection &section, const std::string &directory)
 {
   const std::vector<Mode> &modes = section.modes();
-  const bool first = dealii::Utilities::MPI::this_mpi_process(section.communicator()) == 0;
+  const bool first =
+      dealii::Utilities::MPI::this_mpi_process(section.communicator()) == 0;
   std::optional<coupling::Table> table;
   if (first)
     table.emplace(directory + "/modes.csv",
@@ -112,11 +123,13 @@ void write_modes(const BucklingSection &section, const std::string &directory)
   {
     const double n = modes[k].half_waves;
     if (first)
-      table->append(std::vector<double>{k + 1., modes[k].shortening, modes[k].stress, n,
-                                        n > 0. ? 2. * section.geometry().length() / n : 0.});
+      table->append(
+          std::vector<double>{k + 1., modes[k].shortening, modes[k].stress, n,
+                              n > 0. ? 2. * section.geometry().length() / n : 0.});
     char file[64];
     std::snprintf(file, sizeof file, "fields/mode_%04zu.vtu", k + 1);
-    coupling::write_mesh_vtu(directory + "/" + file, section.solid(), section.shapes()[k].shape);
+    coupling::write_mesh_vtu(directory + "/" + file, section.solid(),
+                             section.shapes()[k].shape);
     fields.push_back({k + 1., "continuum", file});
   }
   if (first)
@@ -259,7 +272,10 @@ int run_buckling(const Parameters &p,
     write_modes(section, options.output);
     words = compare(section, section.modes(), summary.results);
     summary.results.insert(results.begin(), results.end());
-    summary.warnings = doubts(section, section.modes(), p.run.modes);
+    summary.warnings = doubts(section, section.modes(), p.run.modes,
+                              results.count("change_in_last_round") > 0
+                                  ? results.at("change_in_last_round").value
+                                  : 0.);
     log_modes(section.modes(), log);
   }
   summarise_effects(p, summary.solves, summary);

@@ -3,6 +3,7 @@
 #include "cases/mesh_strips.h"
 #include "cases/section_foundation.h"
 #include "cases/section_materials.h"
+#include "cases/sizes.h"
 #include "cases/solid_run.h"
 #include "continuum/error_indicator.h"
 #include "continuum/refinement.h"
@@ -55,34 +56,41 @@ double BucklingSection::layer_stress(const continuum::Vector &displacement) cons
          dealii::Utilities::MPI::sum(area, communicator());
 }
 
-/// Changes of sign, from column to column, of what the layer moves across on average.
-/// Columns that hardly move do not count.
+/// Changes of sign, from column to column of the finest cells, of what the layer moves
+/// across on average. Columns that hardly move do not count.
 unsigned int BucklingSection::half_waves(const continuum::Vector &shape) const
 {
   const SectionGeometry &g = geometry_;
-  std::vector<double> across(g.n_columns()), number(g.n_columns());
+  const std::size_t n_columns = static_cast<std::size_t>(g.n_columns())
+                                << (mesh_->n_global_levels() - 1);
+  std::vector<double> across(n_columns), number(n_columns);
   std::vector<dealii::types::global_dof_index> dofs(solid_->fe().n_dofs_per_cell());
   for (const auto &cell : solid_->dof_handler().active_cell_iterators())
     if (cell->is_locally_owned() && cell->material_id() == layer_material_id)
     {
-      const auto column = static_cast<std::size_t>(
-          std::floor((cell->center()[0] - g.x_min()) / g.length() * g.n_columns()));
       cell->get_dof_indices(dofs);
       for (unsigned int i = 0; i < dofs.size(); ++i)
         if (solid_->fe().system_to_component_index(i).first == 1)
         {
+          const double place =
+              (solid_->support_point(dofs[i])[0] - g.x_min()) / g.length();
+          const std::size_t column =
+              std::min(n_columns - 1, static_cast<std::size_t>(std::max(
+                                          0., place * static_cast<double>(n_columns))));
           across[column] += shape(dofs[i]);
           number[column] += 1.;
         }
     }
   dealii::Utilities::MPI::sum(across, communicator(), across);
   dealii::Utilities::MPI::sum(number, communicator(), number);
+  std::size_t n_met = 0; // large cells have no nodes in some of the columns
+  for (std::size_t k = 0; k < n_columns; ++k)
+    if (number[k] > 0.)
+      across[n_met++] = across[k] / number[k];
+  across.resize(n_met);
   double mean = 0., largest = 0., last = 0.; // a bare layer is held at one corner
-  for (std::size_t k = 0; k < across.size(); ++k)
-  {
-    across[k] /= number[k];
-    mean += across[k] / static_cast<double>(across.size());
-  }
+  for (const double u : across)
+    mean += u / static_cast<double>(n_met);
   for (double &u : across)
   {
     u -= mean;
@@ -116,8 +124,7 @@ void BucklingSection::solve(const std::function<bool()> &stop)
                       half_waves(shape.shape)});
 }
 
-std::vector<double>
-BucklingSection::indicators(const continuum::BucklingMode &mode) const
+std::vector<double> BucklingSection::indicators(const continuum::BucklingMode &mode) const
 {
   continuum::Surroundings surroundings;
   surroundings.displacements = section_supports(p_, geometry_, *solid_, shortening);
@@ -153,6 +160,7 @@ bool BucklingSection::refine()
   solid_.reset();
   continuum::RefinementOptions options;
   options.bulk_share = p_.matrix.refinement_share;
+  options.max_cells = largest_mesh(p_);
   const bool refined = continuum::refine(*mesh_, found, options);
   build();
   return refined;

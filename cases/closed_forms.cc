@@ -226,16 +226,20 @@ TheorySection critical_states(const Parameters &p, const SectionGeometry &g)
   if (!p.has("matrix") || p.has("beds"))
   {
     section.title = "Critical stress and wavelength of a long layer";
-    section.rows.push_back(
-        no_row("critical_stress", "critical stress",
-               p.has("matrix") ? of_one_layer : no_matrix + ": the length decides"));
+    if (p.has("foundation") && !p.has("beds") && !p.foundation.lifts_off)
+      section.rows.push_back(
+          critical_row("on_foundation", "on its foundation", supported_layer(p)));
+    else
+      section.rows.push_back(
+          no_row("critical_stress", "critical stress",
+                 p.has("beds") ? of_one_layer : no_matrix + ": the length decides"));
     return section;
   }
   const std::vector<theory::Side> sides = matrix_sides(p);
   const theory::Side half_space{sides[0].young_modulus, sides[0].poisson_ratio, 0.};
   theory::Side weighty = sides[0];
   weighty.far_face = theory::Side::FarFace::spring;
-  weighty.far_spring = unit_weight(p);
+  weighty.far_spring += unit_weight(p); // on what a foundation on top adds already
   for (const bool bonded : {false, true})
   {
     const auto between = [&](const theory::Side &above, const theory::Side &below) {
@@ -347,7 +351,8 @@ confinement_section(const Parameters &p, const SectionGeometry &g, const Confine
     section.rows.insert(
         section.rows.begin() + 3,
         figure_row("buckling_stress_with_matrix", "the same with its matrix (E')",
-                   c.pressure + expect_mechanism(p, g).pinned * l.compressive_strength,
+                   c.pressure + supported_layer(p).critical_mode(g.wavelength()).force /
+                                    g.thickness(),
                    "Pa"));
   return section;
 }

@@ -44,7 +44,7 @@ theory::SupportedLayer supported_layer(const Parameters &p)
   layer.bonded =
       p.matrix.interface == "cemented" || p.matrix.interface == "frictional";
   for (const std::string face : {"base", "top"})
-    if (!p.has("matrix") && p.has_foundation_under(face))
+    if (!p.has("matrix") && p.has_foundation_under(face) && !p.foundation.lifts_off)
     {
       layer.direct_foundation += p.foundation_stiffness();
       layer.direct_shear += p.foundation_shear();

@@ -2,6 +2,7 @@
 
 #include "cases/interrupt.h"
 #include "cases/nonlinear_section.h"
+#include "cases/small_strain.h"
 #include "cases/solid_run.h"
 #include "continuum/arc_length.h"
 #include "continuum/errors.h"
@@ -12,6 +13,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -124,6 +126,7 @@ std::map<std::string, Result> results_of(const Parameters &p,
 /// How a run went.
 struct Course
 {
+  SmallStrainWatch watch; ///< where strain is small by 'Run/Strain'
   std::string status = "completed", failure;
   std::size_t iterations = 0; ///< of Newton's method
 
@@ -171,6 +174,27 @@ void log_reading(const int step, const double shortening, const Reading &r, RunL
   log.line(text);
 }
 
+/// Watches strains that are small by the deck; false, with the reason, where they are not.
+bool is_small_enough(const Parameters &p,
+                     NonlinearSection &section,
+                     const Vector &displacement,
+                     const long step,
+                     Course &course)
+{
+  if (p.run.strain != "small")
+    return true;
+  try // raised on all ranks together
+  {
+    course.watch.look(section.solid(), displacement, step);
+  }
+  catch (const NumericalError &error)
+  {
+    course.failure = error.what();
+    return false;
+  }
+  return true;
+}
+
 /// Load steps to the end, or to where there is no equilibrium any more: the state is then
 /// that of the last good part of the step.
 Course shorten(const Parameters &p,
@@ -208,7 +232,11 @@ Course shorten(const Parameters &p,
                iterations - course.iterations, section.solid(), u);
     course.iterations = iterations;
     log_reading(step, record.reached, reading, log);
+    if (course.failure.empty() && !is_small_enough(p, section, u, step, course))
+      course.status = "failed";
   }
+  if (!course.failure.empty() && record.n_states() > 0 && p.run.strain == "finite")
+    course.failure += ". 'Run/Path' = 'arc length' follows a path past a limit point";
   return course;
 }
 
@@ -233,9 +261,11 @@ Course follow(const Parameters &p,
                section.solid(), displacement);
     course.iterations += point.iterations;
     log_reading(step, record.reached, reading, log);
-    ++step;
-    if (must_stop_now())
+    if (!is_small_enough(p, section, displacement, step, course))
+      course.status = "failed";
+    else if (must_stop_now())
       course.status = "interrupted";
+    ++step;
     return course.status == "completed";
   };
   const auto first = [&]
@@ -251,7 +281,7 @@ Course follow(const Parameters &p,
   options.first_length = section.end_shortening() / p.run.load_steps *
                          section.geometry().length() / std::sqrt(24.);
   options.observe = note;
-  options.max_steps = 20 * static_cast<unsigned int>(p.run.load_steps);
+  options.max_steps = std::max(500u, 20 * static_cast<unsigned int>(p.run.load_steps));
   continuum::ArcLength path(section.loaded(), options);
   double factor = 0.;
   try // raised on all ranks together
@@ -285,6 +315,8 @@ int run_nonlinear(const Parameters &p,
 
   Summary summary = summary_of_solid(p, section.solid(), begin);
   summary.status = course.status;
+  for (const std::string &warning : course.watch.warnings())
+    summary.warnings.push_back(warning);
   if (!course.failure.empty())
     summary.warnings.push_back(course.failure);
   summary.steps = summary.solves = record.n_states();

@@ -17,6 +17,17 @@ namespace antiform::cases
 using continuum::Vector;
 using dealii::Point;
 
+namespace
+{
+void add_dead(const Vector &force, continuum::Loads &loads)
+{
+  if (loads.dead)
+    *loads.dead += force;
+  else
+    loads.dead = force;
+}
+} // namespace
+
 NonlinearSection::NonlinearSection(const Parameters &p, const MPI_Comm communicator)
     : p_(p)
     , geometry_(p)
@@ -116,6 +127,14 @@ continuum::Loads NonlinearSection::constant_loads() const
         });
   if (p_.has("surface pressure") || p_.has("membrane"))
     add_pressure(loads);
+  // What the springs of the base bore when the section was laid down on them.
+  if (p_.has("matrix") && p_.has_foundation_under("base") && !p_.foundation.lifts_off &&
+      (p_.has("gravity") || p_.has("surface pressure")))
+    add_dead(continuum::boundary_traction(
+                 solid_, {continuum::boundary::bottom},
+                 [this](const Point<2> &x, const dealii::Tensor<1, 2> &normal)
+                 { return -pressure_at(x[1]) * normal; }),
+             loads);
   return loads;
 }
 
@@ -132,11 +151,7 @@ void NonlinearSection::add_pressure(continuum::Loads &loads) const
     loads.pressures.emplace_back(solid_, faces, pressure);
     return;
   }
-  const Vector force = continuum::pressure(solid_, faces, pressure);
-  if (loads.dead)
-    *loads.dead += force;
-  else
-    loads.dead = force;
+  add_dead(continuum::pressure(solid_, faces, pressure), loads);
 }
 
 continuum::Loads NonlinearSection::shortening_to(const double shortening) const

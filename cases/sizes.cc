@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unistd.h>
 
 namespace antiform::cases
 {
@@ -105,14 +106,27 @@ double predict_shortening(const Parameters &p, const SectionGeometry &g)
   return std::min(multiple * predict_strain_at_peak(p, g), p.run.longest_shortening);
 }
 
+/// By how much a round of refinement grows the mesh, roughly: all cells, or those few
+/// that hold a share of the error.
+double growth_by_refinement(const Parameters &p)
+{
+  return p.matrix.refinement_rounds > 0
+             ? 1. + 3. * std::pow(p.matrix.refinement_share, 6.)
+             : 1.;
+}
+
+constexpr double bytes_per_dof = 2e3;
+
 /// Of the implicit drivers: direct factors of plane meshes and what is done with them,
 /// measured on meshes of 5e3 to 2e5 dofs [s].
 double predict_solves(const Parameters &p, const double dofs)
 {
   if (p.run.driver == "buckling")
   {
-    // Each round of refinement about doubles the dofs.
-    const double all = dofs * (std::exp2(p.matrix.refinement_rounds + 1.) - 1.);
+    const double growth = growth_by_refinement(p), n = p.matrix.refinement_rounds + 1.;
+    // dofs are those of the last round.
+    const double all =
+        growth > 1. ? dofs * (1. - std::pow(growth, -n)) / (1. - 1. / growth) : dofs;
     return 0.5 + all * (8e-5 + 1.5e-5 * (p.run.modes - 1.));
   }
   const double steps = p.has("walls") ? p.run.load_steps : 1.;
@@ -126,9 +140,17 @@ double predict_memory(const Parameters &p, const Sizes &sizes)
   // 2.4 GB for a million grains; the mesh needs 2000 a degree of freedom.
   const double factor = p.run.driver == "dynamic" ? 0. : 2400.;
   return (sizes.grains + sizes.tile_grains) * (600. + joints_per_grain * 150. + factor) +
-         2e3 * sizes.dofs + 120e6;
+         bytes_per_dof * sizes.dofs + 120e6;
 }
 } // namespace
+
+double largest_mesh(const Parameters &p)
+{
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<double>(sysconf(_SC_PAGESIZE));
+  return 0.5 * memory /
+         (bytes_per_dof * 2. * p.matrix.element_degree * p.matrix.element_degree);
+}
 
 Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
 {
@@ -147,6 +169,8 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
   if (p.layer.representation == "continuum" || p.is_bridged())
   {
     sizes.cells = g.n_columns() * rows_of_cells(p, g);
+    if (p.run.driver == "buckling")
+      sizes.cells *= std::pow(growth_by_refinement(p), p.matrix.refinement_rounds);
     sizes.dofs = 2. * sizes.cells * p.matrix.element_degree * p.matrix.element_degree;
   }
   if (p.has("walls") && p.run.steps_in_time())

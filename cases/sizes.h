@@ -16,5 +16,8 @@ struct Sizes
   double memory = 0.; ///< [bytes]
 };
 
+/// Cells whose mesh would fill half of this machine's memory: refinement ends there.
+double largest_mesh(const Parameters &parameters);
+
 Sizes predict_sizes(const Parameters &parameters, const SectionGeometry &geometry);
 } // namespace antiform::cases

@@ -3,6 +3,8 @@
 #include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,21 +17,29 @@ constexpr double rotation_limit = 5. * M_PI / 180.;
 constexpr double strain_limit = 0.1;
 } // namespace
 
-void SmallStrainWatch::look(const continuum::ElasticSolid &solid,
+void SmallStrainWatch::look(const continuum::DisplacementSpace &space,
                             const continuum::Vector &displacement,
                             const long step)
 {
-  for (const auto &cell : solid.cell_states(displacement))
+  dealii::FEValues<2> values(space.fe(), dealii::QMidpoint<2>(),
+                             dealii::update_gradients | dealii::update_quadrature_points);
+  const dealii::FEValuesExtractors::Vector u(0);
+  std::vector<dealii::Tensor<2, 2>> gradients(1);
+  for (const auto &cell : space.dof_handler().active_cell_iterators())
   {
-    if (cell.weight < 0.2)
+    if (!cell->is_locally_owned())
+      continue;
+    values.reinit(cell);
+    if (space.weight(values.quadrature_point(0)) < 0.2)
       continue; // where the mesh has little weight its strain says nothing
-    largest_rotation = std::max(largest_rotation, std::abs(cell.rotation));
-    const double half_difference = 0.5 * (cell.strain[0] - cell.strain[1]);
-    const double radius = std::hypot(half_difference, 0.5 * cell.strain[2]);
-    const double mean = 0.5 * (cell.strain[0] + cell.strain[1]);
-    largest_strain = std::max(largest_strain, std::abs(mean) + radius);
+    values[u].get_function_gradients(displacement, gradients);
+    const dealii::Tensor<2, 2> &H = gradients[0];
+    largest_rotation = std::max(largest_rotation, 0.5 * std::abs(H[1][0] - H[0][1]));
+    const double radius =
+        std::hypot(0.5 * (H[0][0] - H[1][1]), 0.5 * (H[0][1] + H[1][0]));
+    largest_strain = std::max(largest_strain, 0.5 * std::abs(H[0][0] + H[1][1]) + radius);
   }
-  const MPI_Comm comm = solid.dof_handler().get_communicator();
+  const MPI_Comm comm = space.dof_handler().get_communicator();
   largest_rotation = dealii::Utilities::MPI::max(largest_rotation, comm);
   largest_strain = dealii::Utilities::MPI::max(largest_strain, comm);
   if (largest_rotation > 2. * rotation_limit)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/elastic_solid.h"
+#include "continuum/displacement_space.h"
 
 #include <string>
 #include <vector>
@@ -12,8 +12,9 @@ namespace antiform::cases
 class SmallStrainWatch
 {
 public:
-  /// Look at a displacement. Throws NumericalError at twice a limit, on all ranks.
-  void look(const continuum::ElasticSolid &solid,
+  /// Look at a displacement, ghosts set, in the middle of the cells. Throws
+  /// NumericalError at twice a limit, on all ranks. Collective.
+  void look(const continuum::DisplacementSpace &space,
             const continuum::Vector &displacement,
             long step);
   std::vector<std::string> warnings() const;

@@ -105,6 +105,12 @@ void check_interface(const Parameters &p, Findings &findings)
 {
   const std::string &word = p.matrix.interface;
   const bool buckles = p.run.driver == "buckling";
+  if (p.has_mesh_contact() && p.run.driver == "static" && word != "sliding" &&
+      !p.has("gravity") && !p.has("surface pressure"))
+    findings.push_back({{"Matrix/Interface", "Components"},
+                        "nothing presses the cover on a layer that it may part from: it "
+                        "could float away, a mechanism without stiffness. Add gravity or "
+                        "surface pressure to 'Components', or give sliding or cemented."});
   if (!p.has_mesh_contact() || p.run.driver == "static" || (buckles && word == "sliding"))
     return;
   findings.push_back({{"Matrix/Interface", "Run/Driver", "Layer/Representation"},
@@ -127,6 +133,9 @@ void check_foundation(const Parameters &p, Findings &findings)
                          "Matrix/Representation"},
                         "under a base of grains there are springs only. Give no shear "
                         "and the base, or 'Matrix/Representation' = 'continuum'."});
+  if (f.lifts_off && f.faces != "base")
+    findings.push_back({{"Foundation/Faces", "Foundation/Lifts off"},
+                        "a foundation that only pushes carries the base. Give base."});
   if (f.lifts_off && p.run.driver != "static")
     findings.push_back({{"Foundation/Lifts off", "Run/Driver"},
                         "only the static driver knows a foundation that pushes and does "

@@ -84,9 +84,10 @@ void print(const Parameters &p,
     out << "\n  matrix: E0 = " << si_text(p.matrix_modulus(), "Pa")
         << ", nu0 = " << short_text(p.matrix.poisson_ratio)
         << ", cover H = " << short_text(p.matrix.burial_depth_ratio)
-        << " h with a free top, below " << short_text(p.matrix.base_depth_ratio)
-        << " h on a "
-        << (p.has("foundation") ? "foundation of springs" : p.matrix.base + " base");
+        << (p.has_foundation_under("top") ? " h under springs" : " h with a free top")
+        << ", below " << short_text(p.matrix.base_depth_ratio) << " h on a "
+        << (p.has_foundation_under("base") ? "foundation of springs"
+                                           : p.matrix.base + " base");
   out << '\n';
   for (const TheorySection &section : sections)
   {

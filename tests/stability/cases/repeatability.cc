@@ -23,7 +23,7 @@ TEST(Repeatability, ThreadsDoNotChangeABit)
 
 // Loops over fewer than 2000 grains stay on one thread: here is a scene beyond that, with
 // mesh and bridging domain.
-TEST(Repeatability, ThreadsDoNotChangeABitOfALargerScene)
+TEST(Repeatability, ThreadsDoNotChangeABitOfALargerSceneLong)
 {
   const TemporaryFolder folder;
   for (const int n_threads : {1, 2, 4, 16})

@@ -81,7 +81,7 @@ TEST(Beds, OfOneRockAndCementedAreTheLayer)
   EXPECT_NEAR(result(beds, "section_stiffness") / E, 1., 1e-6);
 }
 
-TEST(Beds, ThatSlideFreelyBendAlone)
+TEST(Beds, ThatSlideFreelyBendAloneLong)
 {
   // Two beds of half the thickness have a quarter of the bending stiffness; an arch under
   // a small load grows by P a0/(D q^2).

@@ -41,7 +41,7 @@ TEST(Prediction, OfStepsHoldsInTension)
   expect_within_half(steps_over_prediction("laboratory/tension", {coarse}));
 }
 
-TEST(Prediction, OfStepsHoldsForBentBeds)
+TEST(Prediction, OfStepsHoldsForBentBedsLong)
 {
   for (const char *interface : {"cemented", "frictional"})
   {

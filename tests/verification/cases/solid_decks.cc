@@ -200,15 +200,48 @@ TEST(InterfaceDeck, IsTheSameOnOneTwoAndFourRanks)
 {
   const TemporaryFolder folder;
   const std::string deck = write_buried(folder);
-  for (const std::string word : {"cemented", "frictional"})
+  const auto force = [&](const std::string &word, const int n)
   {
-    double rise[5] = {};
-    for (const int n : {1, 2, 4})
-      rise[n] = result(run_deck(folder, deck, word + std::to_string(n),
-                                {"Matrix/Interface=" + word}, n),
-                       "wall_force");
-    EXPECT_NEAR(rise[2] / rise[1], 1., 1e-8) << word;
-    EXPECT_NEAR(rise[4] / rise[1], 1., 1e-8) << word;
+    return result(
+        run_deck(folder, deck, word + std::to_string(n), {"Matrix/Interface=" + word}, n),
+        "wall_force");
+  };
+  const double alone = force("frictional", 1);
+  EXPECT_NEAR(force("frictional", 2) / alone, 1., 1e-8);
+  EXPECT_NEAR(force("frictional", 4) / alone, 1., 1e-8);
+  EXPECT_NEAR(force("cemented", 4) / force("cemented", 1), 1., 1e-8);
+}
+
+TEST(InterfaceDeck, ThatNothingHoldsTogetherIsRefused)
+{
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      "check " + write_buried(folder) +
+      set({"Matrix/Interface=frictionless", "Components=layer, matrix, walls"}));
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("could float away"), std::string::npos) << outcome.output;
+}
+
+TEST(FoundationDeck, UnderALoadedSectionRestsAsItWasLaidDown)
+{
+  const TemporaryFolder folder;
+  const std::string deck = write_buried(folder);
+  // A lithostatic section in equilibrium stays where it is, whatever the driver: linear,
+  // of laws, on springs or on a base that only pushes.
+  for (const std::string more :
+       {"Foundation/Lifts off=false", "Foundation/Lifts off=true"})
+  {
+    run_deck(folder, deck, more.substr(more.size() - 4),
+             {"Components=layer, matrix, walls, surface pressure, gravity, foundation",
+              "Matrix/Grain density=2500", "Layer/Grain density=2500", more,
+              "Run/Strain=finite", "Run/End shortening=1e-6", "Run/Load steps=1"});
+    const CsvTable history(folder.path(more.substr(more.size() - 4)) + "/history.csv");
+    EXPECT_NEAR(history.column("fold_amplitude_m")[0], 5., 1e-8) << more;
+    // 5 MPa, and the weight of the cover and half of the layer at its ends.
+    const double depth = 30. + 5. + 5.; // cover above the crest, fold, half of the layer
+    EXPECT_NEAR(history.column("axial_stress_Pa")[0], 5e6 + 0.84 * 2500. * 9.81 * depth,
+                2e-3 * 5e6)
+        << more;
   }
 }
 
