@@ -46,15 +46,14 @@ def closed_form(antiform, entries):
 def one(antiform, directory, contrast, cover):
     """A line of the table; None where the run failed."""
     entries = {"Matrix/Stiffness contrast": contrast, "Matrix/Burial depth ratio": cover,
-               "Matrix/Cover rows": 1 if cover < 0.5 else 0}
+               "Matrix/Cover rows": 1 if cover < 0.25 else 0}
     stress, wavelength = closed_form(antiform, entries)
     h = 10.
-    # Before they are refined: 8 columns a wavelength in cells of h/2, far rows of a fifth,
-    # measured in quarters of h.
+    # Cells are measured in quarters of h: 16 columns a wavelength, far rows of a tenth.
     entries |= {"Layer/Length ratio": 4. * wavelength / h,
                 "Matrix/Base depth ratio": 3. * wavelength / h,
-                "Matrix/Cell aspect ratio": max(1., 2. * wavelength / h / 8.),
-                "Matrix/Largest cell ratio": max(2., 4. * wavelength / h / 5.),
+                "Matrix/Cell aspect ratio": max(1., 4. * wavelength / h / 16.),
+                "Matrix/Largest cell ratio": max(1., 4. * wavelength / h / 10.),
                 "Title": f"E/E0 = {contrast:g} H/h = {cover:g}"}
     name = f"contrast-{contrast:g}-cover-{cover:g}"
     summary = run(antiform, os.path.join(directory, name), DECK, entries)

@@ -153,7 +153,7 @@ TEST(BucklingRun, RefusesWhatTheLinearTheoryLeavesOut)
       {{"Components=layer, matrix, walls, foundation", "Foundation/Lifts off=true"},
        {"'Foundation/Lifts off' = 'true'", "'Run/Driver' = 'static'"}},
       {{"Matrix/Burial depth ratio=0.1"},
-       {"the cover of 1 m is thinner than a cell of 5 m", "'Matrix/Cover rows' = 1"}},
+       {"the cover of 1 m is thinner than a cell of 2.5 m", "'Matrix/Cover rows' = 1"}},
       {{"Matrix/Element degree=1", "Matrix/Refinement rounds=0"},
        {"'Matrix/Element degree' = '1'", "Give 2"}},
       {{"Components=layer, matrix"}, {"Components", "walls"}}};
