@@ -240,3 +240,39 @@ TEST(MaterialRun, ASectionThatCouldFloatAwayIsRefused)
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("Add gravity"), std::string::npos) << outcome.output;
 }
+
+// Case 36: the thesis' plot of strength against slenderness, by finite elements that
+// yield.
+TEST(MaterialRun, ALayerCrushesOrBucklesByItsSlendernessLong)
+{
+  const TemporaryFolder folder;
+  const std::string deck = ANTIFORM_SOURCE_DIR "/cases/shortening/strut.prm";
+  const double phi = 42. * M_PI / 180.,
+               ucs = 2. * 36.06e6 * std::cos(phi) / (1. - std::sin(phi)),
+               imperfection = 1e-3; // of the wave about its mean, over h
+  for (const double slenderness : {0.6, 0.9, 1.1, 1.5, 2., 3.})
+  {
+    const double length = 2. * slenderness * M_PI * std::sqrt(modulus / (12. * ucs)),
+                 euler = 1. / (slenderness * slenderness),
+                 strain = ucs / modulus * std::min(1., euler);
+    const std::string name = std::to_string(slenderness);
+    const auto entry = [](const char *path, const double value)
+    { return std::string(path) + "=" + std::to_string(value); };
+    const Outcome outcome = run_program(
+        "run " + deck + " -o " + folder.path(name) +
+        set({entry("Layer/Length ratio", length),
+             entry("Matrix/Cell aspect ratio", std::max(1., length / 16.)),
+             entry("Run/End shortening", (slenderness < 1. ? 1.08 : 1.4) * strain),
+             "Run/Load steps=100"}));
+    ASSERT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.output;
+    const nlohmann::json summary = summary_of(folder.path(name));
+    // Perry and Robertson: the inner arc yields at s (1 + 6 a / (1 - s / euler)) = 1.
+    const double b = 1. + euler * (1. + 6. * imperfection),
+                 yields = 0.5 * (b - std::sqrt(b * b - 4. * euler));
+    EXPECT_NEAR(result(summary, "peak_stress") / ucs / yields, 1., 0.03) << slenderness;
+    const double growth =
+        result(summary, "fold_amplitude_at_peak") / (2. * imperfection * 10.);
+    // Grown tenfold: within a tenth of the Euler load.
+    EXPECT_EQ(growth > 10., slenderness > 1.) << slenderness << " grew by " << growth;
+  }
+}

@@ -1,0 +1,68 @@
+// Sections at the edge of what a mesh can hold: covers of a hundredth and of a hundred
+// thicknesses, a matrix ten thousand times as soft as the layer and one that hardly
+// changes its volume. They buckle as the closed forms say, or are refused with the
+// remedy.
+#include "support/tiny_run.h"
+
+using namespace antiform::test;
+
+namespace
+{
+const std::string deck = ANTIFORM_SOURCE_DIR "/cases/burial-depth/buckling.prm";
+}
+
+TEST(HardSection, BucklesAsTheClosedFormSays)
+{
+  const TemporaryFolder folder;
+  // Contrast 1e4 in all. Lengths are four half waves of the closed form.
+  const struct
+  {
+    std::string name;
+    std::vector<std::string> entries;
+  } scenes[] = {
+      {"sliver",
+       {"Matrix/Burial depth ratio=0.01", "Matrix/Cover rows=1",
+        "Layer/Length ratio=187.7"}},
+      {"deep", {"Matrix/Burial depth ratio=100", "Layer/Length ratio=149"}},
+      {"stuck-sliver",
+       {"Matrix/Burial depth ratio=0.01", "Matrix/Cover rows=1",
+        "Layer/Length ratio=187.7", "Matrix/Interface=cemented"}},
+      {"incompressible", {"Matrix/Poisson ratio=0.4999", "Layer/Length ratio=179"}},
+      {"refined",
+       {"Matrix/Cell size ratio=2", "Matrix/Refinement rounds=2",
+        "Layer/Length ratio=192.8"}}};
+  for (const auto &scene : scenes)
+  {
+    const Outcome outcome = run_program(
+        "run " + deck + " -o " + folder.path(scene.name) +
+        set({"Run/Modes=1", "Matrix/Largest cell ratio=80"}) + set(scene.entries));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json summary = summary_of(folder.path(scene.name));
+    // The tables' 2 %, 3 % where the matrix sticks.
+    EXPECT_NEAR(result(summary, "critical_stress") / result(summary, "theory_stress"), 1.,
+                scene.name == "stuck-sliver" ? 0.03 : 0.02)
+        << scene.name;
+    EXPECT_EQ(result(summary, "half_waves"), 4.) << scene.name;
+  }
+}
+
+TEST(HardSection, ThatWouldLockOrHasNoRoomForACellIsRefused)
+{
+  const TemporaryFolder folder;
+  const struct
+  {
+    std::vector<std::string> entries;
+    std::string remedy;
+  } cases[] = {{{"Matrix/Poisson ratio=0.4999", "Matrix/Element degree=1",
+                 "Matrix/Refinement rounds=4"},
+                "'Matrix/Element degree' = 2"},
+               {{"Matrix/Burial depth ratio=0.01"}, "'Matrix/Cover rows' = 1"},
+               {{"Matrix/Poisson ratio=0.5"}, "< 0.5"},
+               {{"Layer/Young modulus=-56e9"}, "Layer/Young modulus"}};
+  for (const auto &one : cases)
+  {
+    const Outcome outcome = run_program("check " + deck + set(one.entries));
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(one.remedy), std::string::npos) << outcome.output;
+  }
+}
