@@ -9,7 +9,6 @@ accuracy.md and accuracy.svg/.png. Even cells, halved all over from run to run; 
 ones, in more and more rounds of refinement from the coarsest, of which each run pays all.
 Errors are against the load that the two finest meshes of even Q2 cells tend to (order 4).
 """
-import argparse
 import math
 import os
 import sys
@@ -20,7 +19,7 @@ import matplotlib.pyplot as plt
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import run, write_table  # noqa: E402
+from study_runs import arguments_of, run, save, write_table  # noqa: E402
 
 DECK = os.path.join(HERE, "buckling.prm")
 WAVE = 96.4  # wavelength over h
@@ -111,17 +110,11 @@ def draw(rows, directory):
                     y=0.965)
     figure.text(0.12, 0.885, "Buckling of a layer sliding in its matrix, E/E0 = 10000,"
                 " H/h = 10, two waves long.", fontsize=10)
-    for suffix in ("svg", "png"):
-        figure.savefig(os.path.join(directory, "accuracy." + suffix), dpi=130,
-                       metadata={"Date": None} if suffix == "svg" else None)
+    save(figure, directory, "accuracy")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the picture")
-    arguments = parser.parse_args()
-    os.makedirs(arguments.directory, exist_ok=True)
+    arguments = arguments_of(__doc__)
     rows = [one(arguments.antiform, arguments.directory, *mesh) for mesh in MESHES]
     fine, finest = rows[2]["stress"], rows[3]["stress"]
     limit = finest + (finest - fine) / (2. ** 4 - 1.)

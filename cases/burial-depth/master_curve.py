@@ -8,7 +8,6 @@ of eight half waves and three wavelengths of base; makes what is not in DIRECTOR
 writes master_curve.csv (a line a run), master_curve.md and master_curve.svg/.png, theory
 and computation in one picture. 24 runs took 2 minutes on two cores.
 """
-import argparse
 import csv
 import json
 import math
@@ -23,7 +22,7 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import run, run_all, write_table  # noqa: E402
+from study_runs import arguments_of, rows_of, run, save, write_table  # noqa: E402
 
 DECK = os.path.join(HERE, "buckling.prm")
 CURVE = os.path.join(HERE, "..", "..", "tests", "data", "cover_master_curve.csv")
@@ -120,9 +119,7 @@ def draw(rows, directory):
                     x=0.11, ha="left", fontsize=13, weight="bold", y=0.965)
     figure.text(0.11, 0.915, "Matrix of one kind above and below, free top, deep base;"
                 " eight half waves of quadratic elements.", fontsize=10)
-    for suffix in ("svg", "png"):
-        figure.savefig(os.path.join(directory, "master_curve." + suffix), dpi=130,
-                       metadata={"Date": None} if suffix == "svg" else None)
+    save(figure, directory, "master_curve")
 
 
 def report(rows, directory):
@@ -142,18 +139,10 @@ def report(rows, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the picture")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    arguments = parser.parse_args()
-    os.makedirs(arguments.directory, exist_ok=True)
+    arguments = arguments_of(__doc__)
     keys = [(contrast, cover) for contrast in CONTRASTS for cover in COVERS]
-    found = run_all(lambda contrast, cover: one(arguments.antiform, arguments.directory,
-                                                contrast, cover), keys, arguments.jobs)
-    rows = [found[key] for key in keys if found[key] is not None]
-    if len(rows) < len(keys):
-        sys.exit(f"{len(keys) - len(rows)} of {len(keys)} runs failed, see above")
+    rows = rows_of(lambda *key: one(arguments.antiform, arguments.directory, *key), keys,
+                   arguments.jobs)
     write_table(rows, os.path.join(arguments.directory, "master_curve.csv"))
     report(rows, arguments.directory)
     draw(rows, arguments.directory)

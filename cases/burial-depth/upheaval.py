@@ -8,9 +8,7 @@ upheaval.md and upheaval.svg/.png: axial stress against the rise of the crest, b
 closed form of a layer that has lifted from a flat base, P l^2 = 80.76 D with the rise
 2.407e-3 q l^4 / D. Three runs took half a minute on two cores.
 """
-import argparse
 import csv
-import math
 import os
 import sys
 
@@ -21,7 +19,7 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import run_all, run  # noqa: E402
+from study_runs import arguments_of, rows_of, run, save  # noqa: E402
 
 DECK = os.path.join(HERE, "upheaval.prm")
 BUMPS = [0.15, 0.3, 0.5]  # height over h
@@ -71,9 +69,7 @@ def draw(found, directory):
                     ha="left", fontsize=13, weight="bold", y=0.965)
     figure.text(0.1, 0.885, "h = 10 m under its own weight on a base that only pushes;"
                 " shortened by walls, followed by arc length.", fontsize=10)
-    for suffix in ("svg", "png"):
-        figure.savefig(os.path.join(directory, "upheaval." + suffix), dpi=130,
-                       metadata={"Date": None} if suffix == "svg" else None)
+    save(figure, directory, "upheaval")
 
 
 def report(found, directory):
@@ -95,17 +91,11 @@ def report(found, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the picture")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    arguments = parser.parse_args()
-    os.makedirs(arguments.directory, exist_ok=True)
+    arguments = arguments_of(__doc__)
     keys = [(bump,) for bump in BUMPS]
-    found = run_all(lambda bump: one(arguments.antiform, arguments.directory, bump), keys,
+    paths = rows_of(lambda bump: one(arguments.antiform, arguments.directory, bump), keys,
                     arguments.jobs)
-    if any(value is None for value in found.values()):
-        sys.exit("a run failed, see above")
+    found = dict(zip(keys, paths))
     report(found, arguments.directory)
     draw(found, arguments.directory)
 

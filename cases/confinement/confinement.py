@@ -9,12 +9,9 @@ at failure against the pressure, beside the closed forms sigma_E + p and UCS + N
 buckling stress is where the amplitude would grow without bound (Southwell: sigma_1 - p
 against 1/amplitude, to 1/amplitude = 0). 10 runs took a minute on two cores.
 """
-import argparse
 import csv
-import json
 import math
 import os
-import subprocess
 import sys
 
 import matplotlib
@@ -24,7 +21,7 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import run_all, write_table  # noqa: E402
+from study_runs import arguments_of, rows_of, run, save, write_table  # noqa: E402
 
 DECK = os.path.join(HERE, "strut.prm")
 PRESSURES = [0., 5e6, 10e6, 15e6, 20e6]
@@ -56,27 +53,18 @@ def one(antiform, directory, kind, pressure):
     length = LENGTHS[kind]
     crushing = UCS + SLOPE * pressure
     target = os.path.join(directory, f"{kind}-{pressure / 1e6:g}-MPa")
-    summary = os.path.join(target, "summary.json")
-    if not os.path.exists(summary):
-        strain = euler(length) / MODULUS if kind == "slender" else crushing / MODULUS
-        components = "layer, walls" + (", membrane" if pressure > 0. else "")
-        entries = {"Components": components, "Layer/Length ratio": length,
-                   "Matrix/Cell aspect ratio": max(1., length / 16.),
-                   "Run/End shortening": (1.4 if kind == "slender" else 1.1) * strain,
-                   "Run/Load steps": 60,
-                   "Title": f"{kind.capitalize()} layer under {pressure / 1e6:g} MPa"}
-        if pressure > 0.:
-            entries["Membrane/Pressure"] = pressure
-        command = [antiform, "run", DECK, "-o", target]
-        for name, value in entries.items():
-            command += ["--set", f"{name}={value}"]
-        done = subprocess.run(command, env={**os.environ, "OMP_NUM_THREADS": "1"},
-                              capture_output=True, text=True)
-        if done.returncode not in (0, 2):
-            print(f"{target}: {done.stdout[-400:]}{done.stderr[-400:]}", file=sys.stderr)
-            return None
-    with open(summary) as file:
-        found = json.load(file)
+    strain = euler(length) / MODULUS if kind == "slender" else crushing / MODULUS
+    entries = {"Components": "layer, walls" + (", membrane" if pressure > 0. else ""),
+               "Layer/Length ratio": length,
+               "Matrix/Cell aspect ratio": max(1., length / 16.),
+               "Run/End shortening": (1.4 if kind == "slender" else 1.1) * strain,
+               "Run/Load steps": 60,
+               "Title": f"{kind.capitalize()} layer under {pressure / 1e6:g} MPa"}
+    if pressure > 0.:
+        entries["Membrane/Pressure"] = pressure
+    found = run(antiform, target, DECK, entries, may_give_way=True)
+    if found is None:
+        return None
     with open(os.path.join(target, "history.csv")) as file:
         history = list(csv.DictReader(file))
     peak = found["results"]["peak_stress"]["value"]
@@ -112,9 +100,7 @@ def draw(rows, directory):
                     x=0.1, ha="left", fontsize=13, weight="bold", y=0.965)
     figure.text(0.1, 0.885, "Mohr-Coulomb, UCS 162 MPa, friction 42 degrees; the pressure"
                 " follows the faces, ends guided.", fontsize=10)
-    for suffix in ("svg", "png"):
-        figure.savefig(os.path.join(directory, "confinement." + suffix), dpi=130,
-                       metadata={"Date": None} if suffix == "svg" else None)
+    save(figure, directory, "confinement")
 
 
 def report(rows, directory):
@@ -136,18 +122,10 @@ def report(rows, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the picture")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    arguments = parser.parse_args()
-    os.makedirs(arguments.directory, exist_ok=True)
+    arguments = arguments_of(__doc__)
     keys = [(kind, pressure) for kind in LENGTHS for pressure in PRESSURES]
-    found = run_all(lambda *key: one(arguments.antiform, arguments.directory, *key), keys,
-                    arguments.jobs)
-    rows = [found[key] for key in keys if found[key] is not None]
-    if len(rows) < len(keys):
-        sys.exit(f"{len(keys) - len(rows)} of {len(keys)} runs failed, see above")
+    rows = rows_of(lambda *key: one(arguments.antiform, arguments.directory, *key), keys,
+                   arguments.jobs)
     write_table(rows, os.path.join(arguments.directory, "confinement.csv"))
     report(rows, arguments.directory)
     draw(rows, arguments.directory)

@@ -9,12 +9,9 @@ the thesis' plot of the stress ratio gamma against Lambda with the computed stre
 it. A layer buckles that has bent tenfold at its peak, else it crushes. Runs that stop where
 the layer gives way have had their peak before and count. 14 runs took a minute on two cores.
 """
-import argparse
 import csv
-import json
 import math
 import os
-import subprocess
 import sys
 
 import matplotlib
@@ -24,7 +21,7 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import run_all, write_table  # noqa: E402
+from study_runs import arguments_of, rows_of, run, save, write_table  # noqa: E402
 
 DECK = os.path.join(HERE, "strut.prm")
 SLENDERNESS = [0.5, 0.7, 0.8, 0.9, 0.95, 1., 1.05, 1.1, 1.2, 1.5, 2., 2.5, 3., 4.]
@@ -46,25 +43,17 @@ def one(antiform, directory, slenderness):
     length = 2. * slenderness * math.pi * math.sqrt(MODULUS / (12. * UCS))
     strain = UCS / MODULUS * min(1., slenderness ** -2.)
     target = os.path.join(directory, f"lambda-{slenderness:g}")
-    summary = os.path.join(target, "summary.json")
-    if not os.path.exists(summary):
-        entries = {"Layer/Length ratio": length,
-                   # 24 columns or more: a third of h to three times h wide
-                   "Matrix/Cell aspect ratio": max(1., 4. * length / 64.),
-                   # Stout layers give way at once, slender ones bend on.
-                   "Run/End shortening": (1.08 if slenderness < 1. else 1.4) * strain,
-                   "Run/Load steps": 100,
-                   "Title": f"Strut of yielding rock Lambda = {slenderness:g}"}
-        command = [antiform, "run", DECK, "-o", target]
-        for name, value in entries.items():
-            command += ["--set", f"{name}={value}"]
-        done = subprocess.run(command, env={**os.environ, "OMP_NUM_THREADS": "1"},
-                              capture_output=True, text=True)
-        if done.returncode not in (0, 2):
-            print(f"{target}: {done.stdout[-400:]}{done.stderr[-400:]}", file=sys.stderr)
-            return None
-    with open(summary) as file:
-        found = json.load(file)
+    found = run(antiform, target, DECK,
+                {"Layer/Length ratio": length,
+                 # 24 columns or more: a third of h to three times h wide
+                 "Matrix/Cell aspect ratio": max(1., 4. * length / 64.),
+                 # Stout layers give way at once, slender ones bend on.
+                 "Run/End shortening": (1.08 if slenderness < 1. else 1.4) * strain,
+                 "Run/Load steps": 100,
+                 "Title": f"Strut of yielding rock Lambda = {slenderness:g}"},
+                may_give_way=True)
+    if found is None:
+        return None
     with open(os.path.join(target, "history.csv")) as file:
         stress = [float(row["axial_stress_Pa"]) for row in csv.DictReader(file)]
     result = {name: entry["value"] for name, entry in found["results"].items()}
@@ -105,9 +94,7 @@ def draw(rows, directory):
                     weight="bold", y=0.965)
     figure.text(0.1, 0.885, "Mohr-Coulomb, UCS 162 MPa, bent beforehand by h/1000; finite"
                 " strain, quadratic elements.", fontsize=10)
-    for suffix in ("svg", "png"):
-        figure.savefig(os.path.join(directory, "strength_sweep." + suffix), dpi=130,
-                       metadata={"Date": None} if suffix == "svg" else None)
+    save(figure, directory, "strength_sweep")
 
 
 def report(rows, directory):
@@ -128,18 +115,10 @@ def report(rows, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("antiform", help="the program")
-    parser.add_argument("directory", help="for the runs and the picture")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    arguments = parser.parse_args()
-    os.makedirs(arguments.directory, exist_ok=True)
+    arguments = arguments_of(__doc__)
     keys = [(value,) for value in SLENDERNESS]
-    found = run_all(lambda value: one(arguments.antiform, arguments.directory, value), keys,
-                    arguments.jobs)
-    rows = [found[key] for key in keys if found[key] is not None]
-    if len(rows) < len(keys):
-        sys.exit(f"{len(keys) - len(rows)} of {len(keys)} runs failed, see above")
+    rows = rows_of(lambda *key: one(arguments.antiform, arguments.directory, *key), keys,
+                   arguments.jobs)
     write_table(rows, os.path.join(arguments.directory, "strength_sweep.csv"))
     report(rows, arguments.directory)
     draw(rows, arguments.directory)
