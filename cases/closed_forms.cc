@@ -232,7 +232,7 @@ TheorySection critical_states(const Parameters &p, const SectionGeometry &g)
     else
       section.rows.push_back(
           no_row("critical_stress", "critical stress",
-                 p.has("beds") ? of_one_layer : no_matrix + ": the length decides"));
+                 p.has("matrix") ? of_one_layer : no_matrix + ": the length decides"));
     return section;
   }
   const std::vector<theory::Side> sides = matrix_sides(p);
