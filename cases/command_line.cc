@@ -44,7 +44,8 @@ void add_run(CLI::App &app, CommandLine &line)
                    "go on from state.h5 in the output directory");
   command
       .add_option("--time-limit", line.run.time_limit,
-                  "stop with a checkpoint after so many seconds (exit status 3)")
+                  "stop after so many seconds (exit status 3), with a checkpoint if the "
+                  "driver steps in time")
       ->check(CLI::Range(1e-9, 1e12)) // not NaN either
       ->type_name("SECONDS");
   command.footer(
@@ -54,7 +55,8 @@ void add_run(CLI::App &app, CommandLine &line)
       "  mpirun -np 4 antiform run DECK -o out   (continuum only)\n"
       "Exit status: 0 done, "
       "1 error of the deck, an option or a file, 2 error of the physics,\n3 interrupted: "
-      "'antiform run DECK -o DIR --resume' goes on.\n");
+      "'antiform run DECK -o DIR --resume' goes on\n(not static and buckling runs, which "
+      "keep no checkpoint).\n");
   command.callback([&line] { line.command = CommandLine::Command::run; });
 }
 

@@ -129,6 +129,7 @@ struct Course
   SmallStrainWatch watch; ///< where strain is small by 'Run/Strain'
   std::string status = "completed", failure;
   std::size_t iterations = 0; ///< of Newton's method
+  std::size_t solves = 0;     ///< equilibria, those within a load step too
 
   int exit_status() const
   {
@@ -235,6 +236,7 @@ Course shorten(const Parameters &p,
     if (course.failure.empty() && !is_small_enough(p, section, u, step, course))
       course.status = "failed";
   }
+  course.solves = newton.steps().size();
   if (!course.failure.empty() && record.n_states() > 0 && p.run.strain == "finite")
     course.failure += ". 'Run/Path' = 'arc length' follows a path past a limit point";
   return course;
@@ -266,6 +268,7 @@ Course follow(const Parameters &p,
     else if (must_stop_now())
       course.status = "interrupted";
     ++step;
+    ++course.solves;
     return course.status == "completed";
   };
   const auto first = [&]
@@ -319,7 +322,8 @@ int run_nonlinear(const Parameters &p,
     summary.warnings.push_back(warning);
   if (!course.failure.empty())
     summary.warnings.push_back(course.failure);
-  summary.steps = summary.solves = record.n_states();
+  summary.steps = record.n_states();
+  summary.solves = static_cast<std::int64_t>(course.solves);
   if (record.last.relative_slip > 0.3)
     summary.warnings.push_back(
         "layer and matrix have slipped on one another by " +
@@ -336,9 +340,8 @@ int run_nonlinear(const Parameters &p,
     log.line("warning: " + warning);
   char text[160];
   std::snprintf(text, sizeof text,
-                "%s: %lld equilibria, %zu Newton iterations, peak %.4g Pa at %.4g",
-                course.status.c_str(), static_cast<long long>(summary.solves),
-                course.iterations,
+                "%s: %zu equilibria, %zu Newton iterations, peak %.4g Pa at %.4g",
+                course.status.c_str(), course.solves, course.iterations,
                 record.peak.axial_stress, record.strain_at_peak);
   log.line(std::string(text) + (course.status == "interrupted"
                                     ? "; a static run keeps no checkpoint, run it again "

@@ -15,6 +15,12 @@ inline std::string tiny_deck()
   return std::string(ANTIFORM_SOURCE_DIR) + "/tests/decks/tiny.prm";
 }
 
+/// A pre-bent layer and its matrix of finite elements, for the static driver.
+inline std::string buried_deck()
+{
+  return std::string(ANTIFORM_SOURCE_DIR) + "/tests/decks/buried.prm";
+}
+
 /// --set "ENTRY=VALUE" for each of @p entries.
 inline std::string set(const std::vector<std::string> &entries)
 {

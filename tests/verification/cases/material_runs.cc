@@ -116,41 +116,18 @@ TEST(MaterialRun, FiniteStrainIsSmallStrainWhereStrainIsSmall)
 TEST(MaterialRun, ASectionUnderItsLoadsRestsAndIsTheSameOnTwoRanks)
 {
   const TemporaryFolder folder;
-  std::ofstream(folder.path("buried.prm")) << R"(set Title      = buried
-set Components = layer, matrix, walls, gravity, surface pressure
-subsection Layer
-  set Representation = continuum
-  set Shape          = cosine
-  set Length ratio   = 16
-  set Grains across  = 4
-end
-subsection Matrix
-  set Stiffness contrast = 20
-  set Element degree     = 2
-  set Cell size ratio    = 2
-  set Cell aspect ratio  = 2
-end
-subsection Surface pressure
-  set Pressure = 5e6
-end
-subsection Matrix material
-  set Law            = Drucker-Prager
-  set Cohesion       = 3e6
-  set Friction angle = 30
-end
-subsection Run
-  set Driver         = static
-  set Strain         = finite
-  set End shortening = 4e-3
-  set Load steps     = 4
-end
-)";
   nlohmann::json summary[2];
   for (const int n : {1, 2})
   {
     const std::string directory = folder.path(std::to_string(n));
     const Outcome outcome =
-        run_program("run " + folder.path("buried.prm") + " -o " + directory, n);
+        run_program("run " + buried_deck() + " -o " + directory +
+                        set({"Components=layer, matrix, walls, gravity, surface pressure",
+                             "Matrix material/Law=Drucker-Prager",
+                             "Matrix material/Cohesion=3e6",
+                             "Matrix material/Friction angle=30", "Run/Strain=finite",
+                             "Run/End shortening=4e-3", "Run/Load steps=4"}),
+                    n);
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     summary[n - 1] = summary_of(directory);
   }
@@ -199,33 +176,11 @@ TEST(MaterialRun, ASectionThatDoesNotBearItsLoadsSaysSo)
 {
   const TemporaryFolder folder;
   // A layer twelve times as heavy as the mud it lies in sinks.
-  std::ofstream(folder.path("mud.prm")) << R"(set Title      = mud
-set Components = layer, matrix, walls, gravity
-subsection Layer
-  set Representation = continuum
-  set Shape          = cosine
-  set Length ratio   = 16
-  set Grains across  = 4
-  set Grain density  = 30000
-end
-subsection Matrix
-  set Stiffness contrast = 1e3
-  set Element degree     = 2
-  set Cell size ratio    = 2
-  set Cell aspect ratio  = 2
-end
-subsection Matrix material
-  set Law            = Mohr-Coulomb
-  set Cohesion       = 1e3
-  set Friction angle = 0
-end
-subsection Run
-  set Driver         = static
-  set End shortening = 2e-3
-end
-)";
-  const Outcome outcome =
-      run_program("run " + folder.path("mud.prm") + " -o " + folder.path("mud"));
+  const Outcome outcome = run_program(
+      "run " + buried_deck() + " -o " + folder.path("mud") +
+      set({"Components=layer, matrix, walls, gravity", "Layer/Grain density=30000",
+           "Matrix/Stiffness contrast=1e3", "Matrix material/Law=Mohr-Coulomb",
+           "Matrix material/Cohesion=1e3", "Matrix material/Friction angle=0"}));
   EXPECT_EQ(outcome.status, 2) << outcome.output;
   for (const char *part : {"does not bear its loads", "'Matrix material'"})
     EXPECT_NE(outcome.output.find(part), std::string::npos) << outcome.output;

@@ -24,35 +24,6 @@ nlohmann::json run_deck(const TemporaryFolder &folder,
 }
 
 const std::string decks = std::string(ANTIFORM_SOURCE_DIR) + "/cases/";
-
-/// Layer and matrix of finite elements under 5 MPa, contrast 20, pre-bent.
-std::string write_buried(const TemporaryFolder &folder)
-{
-  std::ofstream(folder.path("buried.prm")) << R"(set Title      = buried
-set Components = layer, matrix, walls, surface pressure
-subsection Layer
-  set Representation = continuum
-  set Shape          = cosine
-  set Length ratio   = 16
-  set Grains across  = 4
-end
-subsection Matrix
-  set Stiffness contrast = 20
-  set Element degree     = 2
-  set Cell size ratio    = 2
-  set Cell aspect ratio  = 2
-end
-subsection Surface pressure
-  set Pressure = 5e6
-end
-subsection Run
-  set Driver         = static
-  set End shortening = 2e-3
-  set Load steps     = 2
-end
-)";
-  return folder.path("buried.prm");
-}
 } // namespace
 
 TEST(FoundationDeck, LongBareLayersBuckleAsOnWinklersAndPasternaksSprings)
@@ -166,13 +137,12 @@ TEST(MembraneDeck, APressureThatFollowsDoesNotKeepALayerFromBuckling)
 TEST(InterfaceDeck, ContactsOrderTheSectionByWhatTheyHold)
 {
   const TemporaryFolder folder;
-  const std::string deck = write_buried(folder);
   const auto run = [&](const std::string &word, const std::vector<std::string> &more)
   {
     std::vector<std::string> entries = {
         "Matrix/Interface=" + word.substr(0, word.find('-')), "Run/End shortening=5e-4"};
     entries.insert(entries.end(), more.begin(), more.end());
-    return run_deck(folder, deck, word, entries);
+    return run_deck(folder, buried_deck(), word, entries);
   };
   const nlohmann::json cemented = run("cemented", {"Run/Strain=finite"}),
                        sliding = run("sliding", {"Run/Strain=finite"}),
@@ -199,12 +169,11 @@ TEST(InterfaceDeck, ContactsOrderTheSectionByWhatTheyHold)
 TEST(InterfaceDeck, IsTheSameOnOneTwoAndFourRanks)
 {
   const TemporaryFolder folder;
-  const std::string deck = write_buried(folder);
   const auto force = [&](const std::string &word, const int n)
   {
-    return result(
-        run_deck(folder, deck, word + std::to_string(n), {"Matrix/Interface=" + word}, n),
-        "wall_force");
+    return result(run_deck(folder, buried_deck(), word + std::to_string(n),
+                           {"Matrix/Interface=" + word}, n),
+                  "wall_force");
   };
   const double alone = force("frictional", 1);
   EXPECT_NEAR(force("frictional", 2) / alone, 1., 1e-8);
@@ -216,7 +185,7 @@ TEST(InterfaceDeck, ThatNothingHoldsTogetherIsRefused)
 {
   const TemporaryFolder folder;
   const Outcome outcome = run_program(
-      "check " + write_buried(folder) +
+      "check " + buried_deck() +
       set({"Matrix/Interface=frictionless", "Components=layer, matrix, walls"}));
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("could float away"), std::string::npos) << outcome.output;
@@ -225,13 +194,12 @@ TEST(InterfaceDeck, ThatNothingHoldsTogetherIsRefused)
 TEST(FoundationDeck, UnderALoadedSectionRestsAsItWasLaidDown)
 {
   const TemporaryFolder folder;
-  const std::string deck = write_buried(folder);
   // A lithostatic section in equilibrium stays where it is, whatever the driver: linear,
   // of laws, on springs or on a base that only pushes.
   for (const std::string more :
        {"Foundation/Lifts off=false", "Foundation/Lifts off=true"})
   {
-    run_deck(folder, deck, more.substr(more.size() - 4),
+    run_deck(folder, buried_deck(), more.substr(more.size() - 4),
              {"Components=layer, matrix, walls, surface pressure, gravity, foundation",
               "Matrix/Grain density=2500", "Layer/Grain density=2500", more,
               "Run/Strain=finite", "Run/End shortening=1e-6", "Run/Load steps=1"});
@@ -248,13 +216,12 @@ TEST(FoundationDeck, UnderALoadedSectionRestsAsItWasLaidDown)
 TEST(LoadDeck, AnOverburdenPressesByItsWeight)
 {
   const TemporaryFolder folder;
-  const std::string deck = write_buried(folder);
   // 5 MPa or 0.84 rho g of 24.2716 h: the same, but for the weight inside the section.
   const std::string components =
       "Components=layer, matrix, walls, surface pressure, gravity";
   const double ratio = 5e6 / (0.84 * 2500. * 9.81 * 10.);
-  const nlohmann::json pressed = run_deck(folder, deck, "pressed", {components}),
-                       covered = run_deck(folder, deck, "covered",
+  const nlohmann::json pressed = run_deck(folder, buried_deck(), "pressed", {components}),
+                       covered = run_deck(folder, buried_deck(), "covered",
                                           {components, "Surface pressure/Pressure=0",
                                            "Surface pressure/Overburden ratio=" +
                                                std::to_string(ratio)});
@@ -264,7 +231,6 @@ TEST(LoadDeck, AnOverburdenPressesByItsWeight)
 TEST(QuietBoundaryDeck, LetsOutTheWavesOfTheWalls)
 {
   const TemporaryFolder folder;
-  const std::string deck = write_buried(folder);
   // Walls that come up to speed within a transit: waves all over the section.
   const std::vector<std::string> sudden = {
       "Run/Driver=dynamic", "Run/End shortening=1e-3",
@@ -272,13 +238,15 @@ TEST(QuietBoundaryDeck, LetsOutTheWavesOfTheWalls)
   std::vector<std::string> quiet = sudden;
   quiet.push_back(
       "Components=layer, matrix, walls, surface pressure, absorbing boundary");
-  const nlohmann::json loud = run_deck(folder, deck, "loud", sudden),
-                       still = run_deck(folder, deck, "still", quiet);
+  const nlohmann::json loud = run_deck(folder, buried_deck(), "loud", sudden),
+                       still = run_deck(folder, buried_deck(), "still", quiet);
   const auto energy = [](const nlohmann::json &s, const char *name)
   { return s.at("energy").at(name).get<double>(); };
   EXPECT_EQ(energy(loud, "damping"), 0.);
   EXPECT_GT(energy(still, "damping"), 0.);
-  EXPECT_LT(std::abs(energy(still, "closure_error")), 1e-3); // explicit, at 0.9 of a step
+  // Undamped but for the dashpots the ledger closes to round-off; the walls still move.
+  EXPECT_LT(std::abs(energy(still, "closure_error")), 1e-10);
+  EXPECT_LT(energy(still, "kinetic"), 0.9 * energy(loud, "kinetic"));
   const auto &effect = still.at("effects").at("absorbing boundary");
   EXPECT_EQ(effect.at("active"), true);
   EXPECT_EQ(effect.at("calls"), still.at("steps"));

@@ -428,8 +428,6 @@ TEST(AbsorbingBoundary, RestsUnderALoadThatItIsGivenAndElseCreeps)
 
 TEST(AbsorbingBoundary, ContinuesFromASavedState)
 {
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    GTEST_SKIP() << "a folder of one rank";
   const antiform::test::TemporaryFolder folder;
   const Pulse pulse = pulses().front();
   std::vector<Energies> last;
@@ -461,8 +459,6 @@ TEST(AbsorbingBoundary, ContinuesFromASavedState)
 TEST(AbsorbingBoundary, ServesAMeshJoinedToGrains)
 {
   using namespace coupling::test;
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    GTEST_SKIP() << "grains run on one rank";
   Column column;
   for (const auto &cell : column.model.triangulation.active_cell_iterators())
     for (const auto &face : cell->face_iterators())

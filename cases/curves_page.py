@@ -1,0 +1,82 @@
+"""Curves of a run: stress and cracks against shortening, fold amplitude or gauge strains."""
+
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+from picture_style import DPI, SHEAR_CRACK, TENSION_CRACK
+
+
+def mark_steps(axes, run, x, y):
+    for number, time in zip(run.step_numbers, run.times):
+        axes.annotate(f"({number})", (100. * time, np.interp(time, x, y)), fontsize=9,
+                      xytext=(0, 9), textcoords="offset points", ha="center", zorder=5,
+                      bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none",
+                            "alpha": 0.8})
+        axes.plot(100. * time, np.interp(time, x, y), "o", color="black", markersize=4,
+                  clip_on=False)
+
+
+def curves(run, path):
+    history = run.history
+    if not history or not len(history.get("shortening", ())):
+        print(f"{path}: not drawn, history.csv has no lines yet", file=sys.stderr)
+        return
+    # A specimen that is pulled: what grows is extension and tension.
+    sign = -1. if history["shortening"].min() < 0. else 1.
+    strain, direction = (("shortening", "compression"), ("extension", "tension"))[sign < 0.]
+    x = sign * history["shortening"]
+    is_specimen = "gauge_strain_axial" in history
+    has_second = is_specimen or "fold_amplitude_m" in history
+    figure, panels = plt.subplots(2 if has_second else 1, 1, sharex=True, squeeze=False,
+                                  figsize=(9., 8. if has_second else 5.5),
+                                  gridspec_kw={"height_ratios": [2, 1][:1 + has_second]})
+    top = panels[0, 0]
+    handles = []
+    for name, unit, label in (("axial_stress_Pa", "MPa", "axial stress"),
+                              ("wall_force_N", "MN/m", "force of the walls")):
+        if name in history:
+            y = sign * history[name] / 1e6
+            handles += top.plot(100. * x, y, color="#1f4fa8", linewidth=1.8, label=label)
+            mark_steps(top, run, x, y)
+            top.set_ylabel(f"{label} ({unit}), {direction} +")
+            top.margins(y=0.1)
+            if y.min() >= 0.:
+                top.set_ylim(bottom=0.)
+            break
+    if "cracks_tensile" in history:
+        counts = top.twinx()
+        for name, colour, label in (("cracks_tensile", TENSION_CRACK, "tension cracks"),
+                                    ("cracks_shear", SHEAR_CRACK, "shear cracks")):
+            handles += counts.plot(100. * x, history[name], color=colour, linewidth=1.2,
+                                   linestyle="--", label=label)
+        counts.set_ylabel("cracks so far")
+        counts.set_ylim(0., max(1.05 * counts.dataLim.y1, 1.))
+        top.set_zorder(counts.get_zorder() + 1)  # the marks stay above the crack counts
+        top.patch.set_visible(False)
+    top.legend(handles=handles, frameon=False, fontsize=10, loc="lower center",
+               bbox_to_anchor=(0.5, 1.), ncol=3)
+    if is_specimen:
+        axial, lateral = (history[f"gauge_strain_{which}"] for which in ("axial", "lateral"))
+        low = high = 0.
+        for values, colour, label in ((axial, "#1f4fa8", "axial"), (lateral, "#d95f02", "lateral"),
+                                      (axial + lateral, "#666666", "of the area")):
+            panels[1, 0].plot(100. * x, 100. * values, color=colour, label=label)
+            seen = 100. * values[:np.argmax(sign * history["axial_stress_Pa"]) + 1]
+            low, high = min(low, seen.min()), max(high, seen.max())
+        # What flies off after the peak must not flatten what was measured before it.
+        panels[1, 0].set_ylim(1.5 * low - 1e-6, 1.5 * high + 1e-6)
+        panels[1, 0].set_ylabel("gauge strain (%), extension +")
+        panels[1, 0].legend(frameon=False, fontsize=10)
+    elif has_second:
+        panels[1, 0].plot(100. * x, history["fold_amplitude_m"], color="#7b3294")
+        panels[1, 0].set_ylabel("fold amplitude (m)")
+    for axes in panels[:, 0]:
+        axes.grid(color="#dddddd", linewidth=0.6)
+        axes.set_xlim(0. if x.min() >= 0. else None, max(102. * x.max(), 1e-6))
+    panels[-1, 0].set_xlabel(f"{strain} (%)")
+    figure.suptitle(run.summary.get("title", ""), fontsize=13, weight="bold")
+    figure.tight_layout()
+    figure.savefig(path, dpi=DPI)
+    plt.close(figure)
+    print(path)
