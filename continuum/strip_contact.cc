@@ -1,5 +1,6 @@
 #include "continuum/strip_contact.h"
 
+#include "continuum/by_place.h"
 #include "continuum/require.h"
 #include "continuum/section_mesh.h"
 
@@ -20,9 +21,6 @@ using namespace dealii;
 
 namespace
 {
-/// Distance at which nodes of two sides are one place, over the length of a face.
-constexpr double same_place = 1e-6;
-
 std::string text_of(const Point<2> &place)
 {
   std::ostringstream text;

@@ -14,13 +14,13 @@ namespace antiform::discrete
 {
 namespace
 {
-constexpr double diameter_tolerance = 0.01;
+constexpr double shrink_tolerance = 0.01;
 constexpr double porosity_tolerance = 0.005;
 constexpr double narrowest_gap = 0.02; // over the mean radius, while packing
 constexpr double margin = 1.1;         // largest radius after the settling of floaters
 
 /// Largest radius over mean diameter.
-double largest_radius(const PackingParameters &p)
+double settled_radius(const PackingParameters &p)
 {
   return margin * p.radius_ratio / (1. + p.radius_ratio);
 }
@@ -29,14 +29,14 @@ double largest_radius(const PackingParameters &p)
 /// two of the largest disks part by is allowed for.
 double dense_gap_ratio(const PackingParameters &p, const double shrink)
 {
-  return p.installation_gap_ratio * shrink - 4. * (1. - shrink) * largest_radius(p);
+  return p.installation_gap_ratio * shrink - 4. * (1. - shrink) * settled_radius(p);
 }
 
 /// Least factor of the radii for which neighbours stay bonded.
 double least_shrink(const PackingParameters &p)
 {
-  return (narrowest_gap + 4. * largest_radius(p)) /
-         (p.installation_gap_ratio + 4. * largest_radius(p));
+  return (narrowest_gap + 4. * settled_radius(p)) /
+         (p.installation_gap_ratio + 4. * settled_radius(p));
 }
 
 double perimeter(const std::vector<Vec2> &polygon)
@@ -93,7 +93,7 @@ Packing pack_polygon(const std::vector<Vec2> &polygon,
     packing = pack_jammed(polygon, dense);
     jammed = packing.quality.porosity;
     shrink = std::sqrt((1. - parameters.porosity) / (1. - jammed));
-    if (std::abs(std::min(1., shrink) / planned - 1.) < diameter_tolerance)
+    if (std::abs(std::min(1., shrink) / planned - 1.) < shrink_tolerance)
       break;
   }
   if (parameters.porosity < jammed - porosity_tolerance)

@@ -2,6 +2,8 @@
 // mesh.
 #include "support/tiny_run.h"
 
+namespace any_cover_tests
+{
 using namespace antiform::test;
 
 TEST(AnyCover, ThatTheChecksAcceptCanBeBuilt)
@@ -22,3 +24,4 @@ TEST(AnyCover, ThatTheChecksAcceptCanBeBuilt)
     EXPECT_EQ(outcome.status, 0) << outcome.output;
   }
 }
+} // namespace any_cover_tests

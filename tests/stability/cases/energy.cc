@@ -1,6 +1,8 @@
 // The ledger of a run: what the walls have put in is stored, dissipated or moving.
 #include "support/tiny_run.h"
 
+namespace energy_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -36,3 +38,4 @@ TEST(EnergyOfARun, ClosesWithoutDampingAndBreakage)
   // Leapfrog: second order in the step, and the walls start gently.
   EXPECT_LT(closure_error(summary), 1e-5);
 }
+} // namespace energy_tests

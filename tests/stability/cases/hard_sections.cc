@@ -4,6 +4,8 @@
 // remedy.
 #include "support/tiny_run.h"
 
+namespace hard_sections_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -66,3 +68,4 @@ TEST(HardSection, ThatWouldLockOrHasNoRoomForACellIsRefused)
     EXPECT_NE(outcome.output.find(one.remedy), std::string::npos) << outcome.output;
   }
 }
+} // namespace hard_sections_tests

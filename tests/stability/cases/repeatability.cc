@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+namespace repeatability_tests
+{
 using namespace antiform::test;
 
 TEST(Repeatability, ThreadsDoNotChangeABit)
@@ -170,3 +172,4 @@ TEST(Repeatability, GrainsRefuseTwoRanks)
   EXPECT_EQ(occurrences(outcome.output, "--threads"), 1u) << outcome.output;
   EXPECT_FALSE(std::filesystem::exists(folder.path("run"))); // before any work
 }
+} // namespace repeatability_tests

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+namespace resume_tests
+{
 using namespace antiform::test;
 namespace fs = std::filesystem;
 
@@ -204,3 +206,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          ::testing::Values(Variant{"Coupled", {}}),
                          [](const auto &instance) { return instance.param.name; });
 } // namespace
+} // namespace resume_tests

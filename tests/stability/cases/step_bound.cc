@@ -2,6 +2,8 @@
 // damping, which pulls each degree of freedom by up to 1 + alpha times its force.
 #include "support/tiny_run.h"
 
+namespace step_bound_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -56,3 +58,4 @@ INSTANTIATE_TEST_SUITE_P(
                "Foundation/Stiffness ratio=1e6", "Damping/Form=local"}}),
     [](const auto &instance) { return instance.param.name; });
 } // namespace
+} // namespace step_bound_tests

@@ -10,6 +10,8 @@
 
 #include <numeric>
 
+namespace hanging_nodes_hard_cases_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -146,3 +148,4 @@ TEST(HardHangingNodes, PatchOfTwoLawsIsExactForNewton)
     EXPECT_LT(largest(u), 1e-10 * largest(exact));
   }
 }
+} // namespace hanging_nodes_hard_cases_tests

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace lift_off_tests
+{
 using namespace antiform;
 using namespace antiform::continuum;
 using namespace antiform::testing;
@@ -173,3 +175,4 @@ TEST(LiftOff, StripLiftedFromAnotherOneLiesAgainAsItLay)
   change -= before;
   EXPECT_LT(largest(change), 1e-8 * largest(before));
 }
+} // namespace lift_off_tests

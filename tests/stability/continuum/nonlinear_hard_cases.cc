@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace nonlinear_hard_cases_tests
+{
 using namespace antiform;
 using namespace antiform::continuum;
 using namespace antiform::testing;
@@ -295,3 +297,4 @@ TEST(HardContinuum, RanksDoNotChangeTheResult)
   EXPECT_NEAR(all[1], one[1], 1e-10 * one[1]);
   EXPECT_NEAR(all[2], one[2], 1e-8 * one[2] + 1e-14);
 }
+} // namespace nonlinear_hard_cases_tests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::energy_tests
 {
 namespace
 {
@@ -189,4 +189,4 @@ TEST(BridgedStep, NoiseStaysBoundedBelowTheLimitAndGrowsAboveIt)
     EXPECT_GT(std::abs(above.last), 1e6);
   }
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::energy_tests

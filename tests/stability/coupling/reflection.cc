@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::reflection_tests
 {
 namespace
 {
@@ -249,4 +249,4 @@ TEST(LatticeReflection, FallsFurtherWithEightCells)
     EXPECT_LE(lattice({n, 2., 8., true}), 0.005);
   }
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::reflection_tests

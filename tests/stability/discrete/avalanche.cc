@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::avalanche_tests
 {
 namespace
 {
@@ -92,4 +92,4 @@ TEST(Avalanche, KeepsItsEnergyAndDoesNotDependOnTheStep)
   EXPECT_NEAR(static_cast<double>(fine.cracks) / static_cast<double>(coarse.cracks), 1.,
               0.1);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::avalanche_tests

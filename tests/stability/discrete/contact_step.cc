@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::contact_step_tests
 {
 namespace
 {
@@ -135,4 +135,4 @@ TEST(StableStep, HoldsThroughAPileOfLooseGrainsThatPress)
     EXPECT_EQ(fastest < 20., below) << fastest;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::contact_step_tests

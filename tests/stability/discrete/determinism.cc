@@ -9,7 +9,7 @@
 #include <cstring>
 #include <numeric>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::determinism_tests
 {
 namespace
 {
@@ -220,4 +220,4 @@ TEST(Numbering, CracksDoNotDependOnIt)
     EXPECT_NEAR(std::sin(a.orientation - b.orientation), 0., 1e-9) << c;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::determinism_tests

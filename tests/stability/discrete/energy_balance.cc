@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::energy_balance_tests
 {
 namespace
 {
@@ -144,4 +144,4 @@ TEST(EnergyBalance, ClosesThroughAnUndampedElasticRun)
   EXPECT_GT(closure_error(samples, 0), 0.1); // half of the energy is kinetic,
   EXPECT_GT(closure_error(samples, 1), 0.1); // half elastic
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::energy_balance_tests

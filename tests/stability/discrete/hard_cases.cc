@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::hard_cases_tests
 {
 namespace
 {
@@ -270,4 +270,4 @@ TEST(ThinLayer, ChainOfSingleGrainsSwingsWithoutGainingEnergy)
   // Finite rotation at w dt = 1 of the stiffest mode: strain times (w dt)^2.
   EXPECT_LT(worst, 1e-3);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::hard_cases_tests

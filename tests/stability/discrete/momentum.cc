@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::momentum_tests
 {
 namespace
 {
@@ -74,4 +74,4 @@ TEST(Momentum, OfABreakingCloudIsKeptForAHundredThousandSteps)
   EXPECT_GT(shear_cracks, 5);
   EXPECT_LT(shear_cracks, static_cast<int>(run.sample.cracks.size()) - 5);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::momentum_tests

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::stable_step_tests
 {
 namespace
 {
@@ -151,4 +151,4 @@ TEST(StableStep, KnowsPrescribedGrainsAndSpringsToTheGround)
   EXPECT_GT(step, 0.8 * 2. / std::sqrt((1e3 + k) / m));
   EXPECT_LT(step, stable_step(pair.grains, pair.joints));
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::stable_step_tests

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::step_halving_tests
 {
 namespace
 {
@@ -86,4 +86,4 @@ TEST(StepHalving, ChangesTheCrackListByLessThanATenth)
   EXPECT_NEAR(ratio(fine.tensile, coarse.tensile), 1., 0.1);
   EXPECT_NEAR(fine.peak / coarse.peak, 1., 0.02);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::step_halving_tests

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::turning_damage_tests
 {
 namespace
 {
@@ -133,4 +133,4 @@ TEST(TurningDamage, FreeTurnKeepsEnergyAndMomentum)
   EXPECT_NEAR(angular() / angular_before, 1., 1e-11);
   EXPECT_TRUE(run.sample.cracks.empty());
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::turning_damage_tests

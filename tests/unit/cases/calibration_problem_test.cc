@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+namespace calibration_problem_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -169,3 +171,4 @@ TEST(RockFile, ReadsBackAsTheRockThatWasFound)
   EXPECT_EQ(read.layer.joint.stiffness_ratio, 2.6);
   EXPECT_EQ(read.layer.joint.radius_multiplier, deck.layer.joint.radius_multiplier);
 }
+} // namespace calibration_problem_tests

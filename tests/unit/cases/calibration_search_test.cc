@@ -9,6 +9,8 @@
 #include <random>
 #include <stdexcept>
 
+namespace calibration_search_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -248,3 +250,4 @@ TEST(FreeParameter, CoordinatesReachEveryValueBetweenTheBoundsAndNoOther)
     EXPECT_LE(free.value(1e3), 50. + 1e-12);
   }
 }
+} // namespace calibration_search_tests

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace command_line_tests
+{
 using namespace antiform::cases;
 using Command = CommandLine::Command;
 
@@ -147,3 +149,4 @@ TEST(Interrupt, RemembersTheSignalAndGoesOn)
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
 }
+} // namespace command_line_tests

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace deck_reader_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -229,3 +231,4 @@ TEST(DeckReader, SuggestsTheNearestNameOrNone)
   EXPECT_EQ(nearest_name("Radius ration", names), "Radius ratio");
   EXPECT_EQ(nearest_name("Viscosity", names), "");
 }
+} // namespace deck_reader_tests

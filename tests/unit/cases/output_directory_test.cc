@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace output_directory_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -120,3 +122,4 @@ TEST(OutputDirectory, BelongsToOneRunAtATime)
   }
   EXPECT_EQ(refusal_of(options_for(scratch.path("run"), true)), "");
 }
+} // namespace output_directory_tests

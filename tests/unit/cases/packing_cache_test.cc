@@ -10,6 +10,8 @@
 #include <fstream>
 #include <iterator>
 
+namespace packing_cache_tests
+{
 using namespace antiform::cases;
 using antiform::test::TemporaryFolder;
 
@@ -144,3 +146,4 @@ TEST(PackingCache, LivesWhereTheEnvironmentSays)
   const Variable homeless("HOME", nullptr);
   EXPECT_EQ(PackingCache::default_directory(), "");
 }
+} // namespace packing_cache_tests

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <sstream>
 
+namespace parameters_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -411,3 +413,4 @@ TEST(Parameters, WhatIsSetOnTheCommandLineMustBeOfUse)
         tells(error.problems(), {"--set", "no use for 'Gravity'", "component gravity"}));
   }
 }
+} // namespace parameters_tests

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <sys/wait.h>
 
+namespace program_tests
+{
 namespace
 {
 struct Outcome
@@ -89,3 +91,4 @@ TEST(Program, EndsWithOneForACommandThatDoesNotExistYet)
   EXPECT_NE(outcome.output.find("What exists: run, check"), std::string::npos)
       << outcome.output;
 }
+} // namespace program_tests

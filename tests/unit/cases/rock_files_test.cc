@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+namespace rock_files_tests
+{
 using namespace antiform::cases;
 
 namespace
@@ -156,3 +158,4 @@ TEST(RockFiles, LeaveTheShapeOfTheJointsOfAMatrixToTheDeck)
   EXPECT_EQ(problems_of(deck, {"Layer/Flat joint/Elements=2"}).size(), 1u);
   EXPECT_EQ(problems_of(deck, {matrix, "Layer/Flat joint/Cohesion=1e6"}).size(), 1u);
 }
+} // namespace rock_files_tests

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+namespace summary_tests
+{
 using namespace antiform::cases;
 using antiform::coupling::read_file;
 using antiform::test::FullDisk;
@@ -108,3 +110,4 @@ TEST(Summary, FullDiskLeavesTheFormerFile)
   }
   EXPECT_EQ(read_file(path), former);
 }
+} // namespace summary_tests

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace absorbing_boundary_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -136,3 +138,4 @@ TEST(AbsorbingDashpots, RefuseFacesThatAreNotThereAndMaterialsWithoutDensity)
   const ElasticSolid light(triangulation, {massless}, 1);
   EXPECT_THROW(absorbing_dashpots(light, {boundary::left}), std::invalid_argument);
 }
+} // namespace absorbing_boundary_tests

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace arch_theory_tests
+{
 namespace theory = antiform::continuum::theory;
 using theory::ArchEnds;
 
@@ -181,3 +183,4 @@ TEST(SnapThrough, LoadUnitIsThatOfTheArch)
                   (layer.bending_stiffness() * std::pow(k, 4) * 10. / std::sqrt(12.)),
               1., 1e-14);
 }
+} // namespace arch_theory_tests

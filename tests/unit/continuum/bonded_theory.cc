@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace bonded_theory_tests
+{
 namespace theory = antiform::continuum::theory;
 using antiform::test::AirySolution;
 using antiform::test::half_digit;
@@ -215,3 +217,4 @@ TEST(BondedTheory, BondingStiffensTheDeepLayer)
   EXPECT_NEAR(smooth, limit, 1e-12 * limit);
   EXPECT_GT(covered(1e-4, 1e6, true).critical()->stress, 1.05 * limit);
 }
+} // namespace bonded_theory_tests

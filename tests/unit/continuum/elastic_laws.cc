@@ -6,6 +6,8 @@
 
 #include <memory>
 
+namespace elastic_laws_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 
@@ -166,3 +168,4 @@ TEST(ElasticLaws, RefuseConstantsOutOfRange)
     EXPECT_STREQ(error.what(), "Poisson's ratio is 0.5; it must be > -1 and < 0.5.");
   }
 }
+} // namespace elastic_laws_tests

@@ -7,6 +7,8 @@
 
 #include <random>
 
+namespace elastic_solid_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -277,3 +279,4 @@ TEST(Loads, PressureAndGravityHaveTheirResultants)
   const auto weight = gravity(solid, dealii::Tensor<1, 2>({0., -10.}));
   EXPECT_NEAR(resultant(weight, 1), -2500. * 10. * 8., 1e-7);
 }
+} // namespace elastic_solid_tests

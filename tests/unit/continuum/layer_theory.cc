@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace layer_theory_tests
+{
 namespace theory = antiform::continuum::theory;
 using theory::Side;
 
@@ -190,3 +192,4 @@ TEST(LayerTheory, AmplificationHasNoEquilibriumAtTheBucklingForce)
   EXPECT_DOUBLE_EQ(theory::amplification(0.5, 1.), 2.);
   EXPECT_THROW(theory::amplification(1., 1.), std::domain_error);
 }
+} // namespace layer_theory_tests

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace maxwell_law_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 
@@ -96,3 +98,4 @@ TEST(MaxwellLaw, RefusesAViscosityThatIsNotPositive)
   for (const double viscosity : {0., -1e19, double(NAN)})
     EXPECT_THROW(MaxwellBody(matrix, viscosity), std::invalid_argument);
 }
+} // namespace maxwell_law_tests

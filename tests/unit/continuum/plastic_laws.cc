@@ -10,6 +10,8 @@
 #include <memory>
 #include <string>
 
+namespace plastic_laws_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 using Match = DruckerPragerParameters::Match;
@@ -320,3 +322,4 @@ TEST(PlasticLaws, RefuseStrainThatIsNotANumber)
       EXPECT_THROW(one.law->respond(input, begin, end), antiform::NumericalError)
           << one.name;
 }
+} // namespace plastic_laws_tests

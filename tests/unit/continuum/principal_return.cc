@@ -9,6 +9,8 @@
 #include <map>
 #include <string>
 
+namespace principal_return_tests
+{
 using namespace antiform::continuum;
 using antiform::test::Dice;
 
@@ -272,3 +274,4 @@ TEST(PrincipalReturn, RefusesWhatIsNotANumber)
   EXPECT_THROW(surface({0., NAN, 0.}), antiform::NumericalError);
   EXPECT_THROW(surface({INFINITY, 0., 0.}), antiform::NumericalError);
 }
+} // namespace principal_return_tests

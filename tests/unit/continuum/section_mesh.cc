@@ -4,6 +4,8 @@
 
 #include <map>
 
+namespace section_mesh_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -145,3 +147,4 @@ TEST(SectionMesh, RefusesStripsThatCrossOrDoNotMeet)
   refused({flat(0.), flat(2.), {0., 0.5, 0.5, 1.}, 1, true}); // a row of no height
   EXPECT_EQ(triangulation.n_levels(), 0u);
 }
+} // namespace section_mesh_tests

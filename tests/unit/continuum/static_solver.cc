@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace static_solver_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 using antiform::NumericalError;
@@ -129,3 +131,4 @@ TEST(NumericalError, NamesComponentStepValueAndLimit)
   EXPECT_STREQ(error.what(),
                "matrix, step 41: step too long (value 2.5e-06, limit 2e-06)");
 }
+} // namespace static_solver_tests

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace strut_theory_tests
+{
 namespace theory = antiform::continuum::theory;
 using antiform::test::half_digit;
 
@@ -120,3 +122,4 @@ TEST(StrutTheory, ViscousMatrixLetsTheDominantWaveGrowFastest)
       layer, {{1e7, 0.5, 0.}, {1e7, 0.5, 0.}}}; // E0' k = 4 G0 k, G0 = E0/3
   EXPECT_NEAR(elastic.support_stiffness(k) / (4. * 1e7 / 3. * k), 1., 1e-14);
 }
+} // namespace strut_theory_tests

@@ -11,6 +11,8 @@
 #include <limits>
 #include <stdexcept>
 
+namespace state_file_tests
+{
 using namespace antiform::coupling;
 using antiform::test::FullDisk;
 using antiform::test::message_of;
@@ -245,3 +247,4 @@ TEST(StateFile, HalfWrittenTemporaryFileOfAKilledRunDoesNoHarm)
   EXPECT_EQ(load(path).step, sample().step);
   EXPECT_FALSE(exists(path + ".tmp"));
 }
+} // namespace state_file_tests

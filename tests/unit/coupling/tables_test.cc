@@ -10,6 +10,8 @@
 #include <limits>
 #include <stdexcept>
 
+namespace tables_tests
+{
 using namespace antiform;
 using namespace antiform::coupling;
 using antiform::test::FullDisk;
@@ -163,3 +165,4 @@ TEST(CrackTable, WritesOneLineABrokenElement)
   EXPECT_EQ(read_file(path),
             expected + "12000000000,0.125,0.003,1.5,-2,1.25,-2,90,0.1,tension,1,77,2\n");
 }
+} // namespace tables_tests

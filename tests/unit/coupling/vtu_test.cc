@@ -11,6 +11,8 @@
 #include <limits>
 #include <stdexcept>
 
+namespace vtu_tests
+{
 using namespace antiform::coupling;
 using antiform::test::FullDisk;
 using antiform::test::message_of;
@@ -215,3 +217,4 @@ TEST(Pvd, ListsFilesByTimeWithOnePartAGroup)
   EXPECT_THROW(write_pvd(path, {{nan, "grains", "x.vtu"}}), std::logic_error);
   EXPECT_EQ(read_file(path), xml);
 }
+} // namespace vtu_tests

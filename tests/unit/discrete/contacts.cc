@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::contacts_tests
 {
 namespace
 {
@@ -268,4 +268,4 @@ TEST(PairsWithin, AgreesWithTheFullDoubleLoop)
       EXPECT_EQ(pairs_within(grains, gap, a, b), all) << gap << ' ' << a << b;
     }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::contacts_tests

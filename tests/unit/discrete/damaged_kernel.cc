@@ -11,7 +11,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::damaged_kernel_tests
 {
 namespace
 {
@@ -242,4 +242,4 @@ TEST(DamagedKernel, LeavesJointsInWhichSomethingBreaksAsTheyWere)
     }
   EXPECT_GT(n_left, 10u);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::damaged_kernel_tests

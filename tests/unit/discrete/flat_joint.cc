@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::flat_joint_tests
 {
 namespace
 {
@@ -121,4 +121,4 @@ TEST(FlatJointBending, CentroidRuleLosesOneOverNSquaredOfTheMoment)
     EXPECT_NEAR(load(pair, d).moment, wanted, 1e-12 * std::abs(exact)) << n;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::flat_joint_tests

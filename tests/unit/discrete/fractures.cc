@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::fractures_tests
 {
 namespace
 {
@@ -111,4 +111,4 @@ TEST(Fractures, ImpossibleDistributionsAreRefused)
   set.length.largest = 101.;
   EXPECT_THROW(draw_fractures(square, set, 1), std::invalid_argument);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::fractures_tests

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace homogenise_tests
+{
 using namespace antiform;
 using namespace antiform::discrete;
 
@@ -211,3 +213,4 @@ TEST(MatchModuli, NamesTheReachableRange)
       }
     }
 }
+} // namespace homogenise_tests

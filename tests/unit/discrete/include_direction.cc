@@ -8,6 +8,8 @@
 #include <set>
 #include <string>
 
+namespace include_direction_tests
+{
 namespace
 {
 const std::map<std::string, std::set<std::string>> may_include{
@@ -44,3 +46,4 @@ TEST(Includes, NeverRunUpOrSideways)
     }
   EXPECT_GT(n_files, 80);
 }
+} // namespace include_direction_tests

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::integrate_tests
 {
 namespace
 {
@@ -229,4 +229,4 @@ TEST(DensityScaling, InTheCourseOfARunTellsTheEnergyLost)
   // 36.
   EXPECT_DOUBLE_EQ(lost, -25. + 169. - 3. + 27.);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::integrate_tests

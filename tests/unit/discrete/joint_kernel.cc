@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::joint_kernel_tests
 {
 namespace
 {
@@ -237,4 +237,4 @@ TEST(IntactKernel, CountsWouldBeBreaksOfUnbreakableJoints)
   EXPECT_TRUE(pair.cracks.empty());
   EXPECT_NEAR(force, 1.1, 1e-12); // and it still carries: k_n A g, round-off
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::joint_kernel_tests

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <string>
 
+namespace packing_tests
+{
 using namespace antiform;
 using namespace antiform::discrete;
 
@@ -365,3 +367,4 @@ TEST(PackingQuality, FiguresOfASquareLattice)
   const double solid = M_PI / 4. - lens_area(0.5, 0.5, 0.99);
   EXPECT_NEAR(q.porosity, 1. - solid / (0.99 * 1.2), 1e-14);
 }
+} // namespace packing_tests

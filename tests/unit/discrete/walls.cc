@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::walls_tests
 {
 namespace
 {
@@ -157,4 +157,4 @@ TEST(Walls, HoldGrainsThatComeToThemLater)
   EXPECT_NEAR(grains.force_x[1], 2e3 * 0.02, 1e-9);
   EXPECT_EQ(grains.force_x[2], 0.); // its overlap was there when the wall was made
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::walls_tests

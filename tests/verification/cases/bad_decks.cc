@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace bad_decks_tests
+{
 using namespace antiform::test;
 namespace fs = std::filesystem;
 
@@ -211,3 +213,4 @@ TEST(BadFolder, WithADamagedCheckpointIsRefused)
     EXPECT_EQ(all_contents(folder.path("run")), before);
   }
 }
+} // namespace bad_decks_tests

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace beds_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -268,3 +270,4 @@ TEST(Beds, ThatSlideAreNotCountedAsFractures)
                    "fractures"),
             1.);
 }
+} // namespace beds_tests

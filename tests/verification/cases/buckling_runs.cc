@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace buckling_runs_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -166,3 +168,4 @@ TEST(BucklingRun, RefusesWhatTheLinearTheoryLeavesOut)
                                                               << outcome.output;
   }
 }
+} // namespace buckling_runs_tests

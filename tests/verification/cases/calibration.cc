@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+namespace calibration_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -160,3 +162,4 @@ TEST(Calibration, CheckSaysWhatItTakes)
   EXPECT_EQ(json.at("trials").at("usual"), 3 + (3 + 2) * 5 * 3 + 3 * 2 * 3);
   EXPECT_GT(json.at("prediction").at("wall_seconds_usual").get<double>(), 60.);
 }
+} // namespace calibration_tests

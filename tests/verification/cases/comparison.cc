@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace comparison_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -153,3 +155,4 @@ TEST(Comparison, OfASlenderLayerInASoftMatrixNoticesErrorsLong)
     EXPECT_GT(growth_difference("fold_amplitude_m", wrong, grains),
               4. * growth_tolerance);
 }
+} // namespace comparison_tests

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace contacts_of_scenes_tests
+{
 using namespace antiform;
 using namespace antiform::test;
 
@@ -71,3 +73,4 @@ TEST(ContactsOfScenes, UnbondedInterfaceCarriesTheSurfacePressure)
     scene->simulation->step();
   }
 }
+} // namespace contacts_of_scenes_tests

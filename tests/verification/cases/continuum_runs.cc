@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+namespace continuum_runs_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -139,3 +141,4 @@ TEST(GrainRun, StartsUnderItsPrestress)
   EXPECT_NEAR(history.column("wall_force_N").front() / wanted, 1., 0.02);
   EXPECT_LT(history.column("unbalanced_ratio").front(), 1e-6);
 }
+} // namespace continuum_runs_tests

@@ -2,6 +2,8 @@
 // effect, and summary.json gives them.
 #include "support/tiny_run.h"
 
+namespace effects_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -138,3 +140,4 @@ TEST(Effects, AreTheSameInCheckAndInTheSummary)
     }
   }
 }
+} // namespace effects_tests

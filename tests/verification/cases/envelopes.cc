@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+namespace envelopes_tests
+{
 using namespace antiform;
 using namespace antiform::test;
 
@@ -87,3 +89,4 @@ TEST(Envelope, TellsWhatItCannotFit)
   EXPECT_NE(other.output.find("no column 'sigma3_MPa'"), std::string::npos)
       << other.output;
 }
+} // namespace envelopes_tests

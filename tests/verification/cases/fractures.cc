@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace fractures_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -197,3 +199,4 @@ TEST(Fractures, AreNotResumedWithATableEditedWhileTheRunWasGoing)
   EXPECT_NE(outcome.output.find("Checksum of Fractures/Table"), std::string::npos)
       << outcome.output;
 }
+} // namespace fractures_tests

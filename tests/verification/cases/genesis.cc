@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+namespace genesis_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -223,3 +225,4 @@ TEST(KeptPackings, GiveTheSameBitsAndAreRemadeWhenDamaged)
   run_to("unwritable", folder.path("file"));
   expect_same_run(folder.path("off"), folder.path("unwritable"));
 }
+} // namespace genesis_tests

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+namespace laboratory_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -171,3 +173,4 @@ TEST(Laboratory, TellsOfAConfinementThatIsNotReached)
   EXPECT_NE(missed.at("warnings")[0].get<std::string>().find("confinement"),
             std::string::npos);
 }
+} // namespace laboratory_tests

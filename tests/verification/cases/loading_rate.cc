@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+namespace loading_rate_tests
+{
 using namespace antiform::test;
 
 // A stout specimen at the laboratory's speed and at half of it. Which bond breaks first
@@ -36,3 +38,4 @@ TEST(LoadingRate, LeavesTheStrengthOfASpecimenAsItIsLong)
   }
   EXPECT_LT(std::abs(change), 0.02);
 }
+} // namespace loading_rate_tests

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 
+namespace material_runs_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -231,3 +233,4 @@ TEST(MaterialRun, ALayerCrushesOrBucklesByItsSlendernessLong)
     EXPECT_EQ(growth > 10., slenderness > 1.) << slenderness << " grew by " << growth;
   }
 }
+} // namespace material_runs_tests

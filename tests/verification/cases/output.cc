@@ -6,6 +6,8 @@
 #include <fstream>
 #include <memory>
 
+namespace output_tests
+{
 using namespace antiform::test;
 namespace fs = std::filesystem;
 
@@ -155,3 +157,4 @@ TEST(OutputDirectory, HoldsASummaryWhenThePhysicsFails)
       << summary.at("warnings");
   EXPECT_GT(contents(folder.path("run/state.h5")).size(), 0u);
 }
+} // namespace output_tests

@@ -1,6 +1,8 @@
 // What antiform check says of the length of a run, against runs to their end.
 #include "support/tiny_run.h"
 
+namespace predictions_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -51,3 +53,4 @@ TEST(Prediction, OfStepsHoldsForBentBedsLong)
         {"Layer/Grains across=9", std::string("Beds/Interface=") + interface}));
   }
 }
+} // namespace predictions_tests

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+namespace resolution_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -58,3 +60,4 @@ TEST(Resolution, CostsALayerAtMostHalfAGrainOnEitherSideLong)
     EXPECT_LT(layers[k].bending / layers[2].bending, 1. + 3. * scatter);
   }
 }
+} // namespace resolution_tests

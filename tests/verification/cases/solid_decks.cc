@@ -7,6 +7,8 @@
 #include <cmath>
 #include <fstream>
 
+namespace solid_decks_tests
+{
 using namespace antiform::test;
 
 namespace
@@ -252,3 +254,4 @@ TEST(QuietBoundaryDeck, LetsOutTheWavesOfTheWalls)
   EXPECT_EQ(effect.at("calls"), still.at("steps"));
   EXPECT_EQ(loud.at("effects").at("absorbing boundary").at("calls"), 0);
 }
+} // namespace solid_decks_tests

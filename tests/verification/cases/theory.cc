@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace theory_tests
+{
 using namespace antiform::test;
 using Json = nlohmann::json;
 
@@ -281,3 +283,4 @@ TEST(Theory, RefusesWhatItCannotAnswer)
   EXPECT_EQ(unknown.status, 1) << unknown.output;
   EXPECT_NE(unknown.output.find("'Matrix/Colour'"), std::string::npos);
 }
+} // namespace theory_tests

@@ -11,6 +11,8 @@
 
 #include <numeric>
 
+namespace adaptive_buckling_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -159,3 +161,4 @@ TEST(AdaptiveBuckling, IsTheSameOnAnyRanks)
     }
   }
 }
+} // namespace adaptive_buckling_tests

@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+namespace adaptive_corner_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 using dealii::Tensor;
@@ -232,3 +234,4 @@ TEST(AdaptiveCorner, IsRefinedAlikeOnAnyRanks)
     }
   }
 }
+} // namespace adaptive_corner_tests

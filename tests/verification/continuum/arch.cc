@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace arch_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -130,3 +132,4 @@ TEST(Arch, CrestsConvergeAtSecondOrder)
   EXPECT_NEAR(heights[2] + (heights[2] - heights[1]) / 3., beam_crest(0.6, 0.),
               2e-3 * heights[2]); // shear and slopes
 }
+} // namespace arch_tests

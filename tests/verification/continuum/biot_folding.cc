@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+namespace biot_folding_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -189,3 +191,4 @@ TEST(BiotFolding, RatesConvergeWithTheCellsLong)
   EXPECT_NEAR(order(1), 3.6, 0.4);
   EXPECT_NEAR(rates[3], exact_rate(fastest), 0.004); // without the cells' share
 }
+} // namespace biot_folding_tests

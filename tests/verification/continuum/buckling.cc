@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+namespace buckling_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -260,3 +262,4 @@ TEST(Buckling, ClosedFormGivesTheModesOnSprings)
                 1e-6 * c.expected.force); // of the digits given
   }
 }
+} // namespace buckling_tests

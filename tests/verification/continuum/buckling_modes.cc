@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+namespace buckling_modes_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -164,3 +166,4 @@ TEST(BucklingModes, ALoosePartHasNoStiffnessToBuckleAgainst)
   const Strut strut(20., 20);
   EXPECT_THROW(strut.modes(End::free, End::pinned, 1), antiform::NumericalError);
 }
+} // namespace buckling_modes_tests

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace convergence_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -80,3 +82,4 @@ TEST(Convergence, Q2DisplacementIsOfThirdOrder)
 {
   expect_order(2);
 }
+} // namespace convergence_tests

@@ -6,6 +6,8 @@
 
 #include <stdexcept>
 
+namespace cooks_membrane_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -107,3 +109,4 @@ TEST(CooksMembrane, PlainQ1IsRefused)
   EXPECT_THROW(rise(make_law<NeoHookean>(1., 0.3), 1, mean, 4), std::invalid_argument);
   EXPECT_THROW(rise(make_law<LinearElastic>(1., 0.3), 2, mean, 4), std::invalid_argument);
 }
+} // namespace cooks_membrane_tests

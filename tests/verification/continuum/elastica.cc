@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace elastica_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -101,3 +103,4 @@ TEST(Elastica, StrutBendsAsTheTableSays)
     EXPECT_GT(order, i < 3 ? 2.5 : 3.5);
   }
 }
+} // namespace elastica_tests

@@ -11,6 +11,8 @@
 
 #include <numeric>
 
+namespace error_indicator_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 using dealii::Tensor;
@@ -205,3 +207,4 @@ TEST(Refinement, RefusesWhatItCannotUse)
   EXPECT_THROW(refine(triangulation, {1., 1.}, {0.}), std::invalid_argument);
   EXPECT_THROW(refine(triangulation, {1., 1.}, {1.1}), std::invalid_argument);
 }
+} // namespace error_indicator_tests

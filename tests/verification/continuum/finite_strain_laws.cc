@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace finite_strain_laws_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 
@@ -183,3 +185,4 @@ TEST(FiniteStrainLaws, SimpleShearIsTheClosedForm)
     EXPECT_NEAR(tau.zz, 0., scale * (1. + square));
   }
 }
+} // namespace finite_strain_laws_tests

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace follower_confinement_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -149,3 +151,4 @@ TEST(FollowerConfinement, DeadPressureFailsThisTest)
     EXPECT_NEAR(factor, 1. - 2. * p / euler_stress, 0.01);
   }
 }
+} // namespace follower_confinement_tests

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace foundation_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -159,3 +161,4 @@ TEST(ShearLayer, RefusesANegativeStiffness)
   EXPECT_THROW(pasternak_foundation(solid, {boundary::bottom}, -1.),
                std::invalid_argument);
 }
+} // namespace foundation_tests

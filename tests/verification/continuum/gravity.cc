@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace gravity_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -87,3 +89,4 @@ TEST(Gravity, ColumnSettlesByHalfItsWeightOverTheOedometerModulus)
     EXPECT_NEAR(largest(u), expected, 1e-6 * expected) << "degree " << degree;
   }
 }
+} // namespace gravity_tests

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+namespace hanging_nodes_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -309,3 +311,4 @@ TEST(HangingNodes, LeaveMultigridAtWork)
     EXPECT_LT(largest(u), 1e-8 * 5e-3);
   }
 }
+} // namespace hanging_nodes_tests

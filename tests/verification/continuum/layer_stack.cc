@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+namespace layer_stack_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -143,3 +145,4 @@ TEST(LayerStack, OfSlidingLayersBendsFarAsTheElastica)
   EXPECT_NEAR(body.contact().relative_slip(u), slope * layer.thickness / face,
               2e-3 * slope * layer.thickness / face);
 }
+} // namespace layer_stack_tests

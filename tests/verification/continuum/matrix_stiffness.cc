@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace matrix_stiffness_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 using FarFace = theory::Side::FarFace;
@@ -81,3 +83,4 @@ TEST(MatrixStiffness, ConvergesAtFourthOrder)
         EXPECT_NEAR(std::log2(errors[1] / errors[2]), 4., 0.3);
       }
 }
+} // namespace matrix_stiffness_tests

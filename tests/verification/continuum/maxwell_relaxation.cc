@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace maxwell_relaxation_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 
@@ -141,3 +143,4 @@ TEST(MaxwellRelaxation, StressDoesWork)
     EXPECT_GT(work, 0.);
   }
 }
+} // namespace maxwell_relaxation_tests

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace nonlinear_patch_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -198,3 +200,4 @@ TEST(NonlinearPatch, SmallDisplacementsAnswerLikeHooke)
       EXPECT_NEAR(std::log10(errors[level] / errors[level + 1]), 1., 0.02);
   }
 }
+} // namespace nonlinear_patch_tests

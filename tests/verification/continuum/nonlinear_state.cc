@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace nonlinear_state_tests
+{
 using namespace antiform;
 using namespace antiform::continuum;
 using namespace antiform::testing;
@@ -137,3 +139,4 @@ TEST(NonlinearState, LithostaticStressIsInEquilibrium)
       EXPECT_NEAR(state.stress.zz, ratio * state.stress.yy, 1e-12 * weight * height);
   }
 }
+} // namespace nonlinear_state_tests

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace patch_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -80,3 +82,4 @@ TEST(PatchTest, RotationIsFreeOfStressInQ2)
 {
   expect_rotation_is_free_of_stress(2);
 }
+} // namespace patch_tests

@@ -8,6 +8,8 @@
 #include <functional>
 #include <memory>
 
+namespace plastic_paths_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 using Match = DruckerPragerParameters::Match;
@@ -150,3 +152,4 @@ TEST(PlasticPaths, AssociatedAnswersNeverSpread)
     }
   }
 }
+} // namespace plastic_paths_tests

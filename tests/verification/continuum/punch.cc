@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace punch_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -87,3 +89,4 @@ TEST(Punch, LockedCellsNeverCollapse)
   EXPECT_GT(pressures.whole, 1.03 * pressures.half);
   EXPECT_GT(pressures.whole, 1.1 * (2. + M_PI));
 }
+} // namespace punch_tests

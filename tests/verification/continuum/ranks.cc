@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace ranks_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -91,3 +93,4 @@ TEST(Ranks, BothSolversAgree)
   EXPECT_LT(cg.iterations,
             100u); // multigrid is at work: unpreconditioned takes thousands
 }
+} // namespace ranks_tests

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace snap_through_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -148,3 +150,4 @@ TEST(SnapThrough, HighArchSwaysBeforeItsLimitPoint)
   EXPECT_NEAR(loads[2], exact->load, 5e-3 * exact->load);
   EXPECT_GT(std::log2((loads[0] - loads[1]) / (loads[1] - loads[2])), 1.8);
 }
+} // namespace snap_through_tests

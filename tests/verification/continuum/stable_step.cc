@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace stable_step_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -157,3 +159,4 @@ TEST(StableStep, LeavesOutNodesThatAreHeld)
   inverse = 0.;
   EXPECT_TRUE(std::isinf(solid.stable_step(inverse)));
 }
+} // namespace stable_step_tests

@@ -10,6 +10,8 @@
 #include <memory>
 #include <vector>
 
+namespace strip_contact_tests
+{
 using namespace antiform;
 using namespace antiform::continuum;
 using namespace antiform::testing;
@@ -275,3 +277,4 @@ TEST(StripContact, OfTwoHalvesAndOnSpringsIsThatOfTheWhole)
     EXPECT_LT(difference.l2_norm(), 1e-12 * norm);
   }
 }
+} // namespace strip_contact_tests

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+namespace supported_layer_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -198,3 +200,4 @@ TEST(SupportedLayer, IsTheSameOnAnyRanks)
   EXPECT_NEAR(all.stress / alone.stress, 1., 1e-8);
   EXPECT_NEAR(all.wavelength / alone.wavelength, 1., 1e-6);
 }
+} // namespace supported_layer_tests

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace tangent_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -195,3 +197,4 @@ TEST(Newton, RefusesConjugateGradientsWithPressuresThatFollow)
   options.method = StaticSolver::Method::conjugate_gradients;
   EXPECT_THROW(NewtonSolver(problem, options), std::invalid_argument);
 }
+} // namespace tangent_tests

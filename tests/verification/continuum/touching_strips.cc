@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+namespace touching_strips_tests
+{
 using namespace antiform;
 using namespace antiform::continuum;
 using namespace antiform::testing;
@@ -386,3 +388,4 @@ TEST(TouchingStrips, RefusesADisplacementThatDoesNotKnowWhatTouches)
     EXPECT_THROW(solid.assemble(u, 0., force, nullptr), std::invalid_argument);
   EXPECT_EQ(knows, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1);
 }
+} // namespace touching_strips_tests

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+namespace unilateral_foundation_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -86,3 +88,4 @@ TEST(UnilateralFoundation, TangentIsTheDerivativeOfTheForces)
     EXPECT_LT(difference.l2_norm(), 1e-9 * Kd.l2_norm()); // round-off over h
   }
 }
+} // namespace unilateral_foundation_tests

@@ -12,6 +12,8 @@
 #include <map>
 #include <memory>
 
+namespace upheaval_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::testing;
 
@@ -154,3 +156,4 @@ TEST(Upheaval, LiftedLayerMeetsTheoryAsTheBaseGetsRigid)
   const double l = 2. * stiff.length - middle.length;
   EXPECT_NEAR(constants.force * l * l, 80.763, 0.01 * 80.763);
 }
+} // namespace upheaval_tests

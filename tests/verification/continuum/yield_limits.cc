@@ -6,6 +6,8 @@
 
 #include <memory>
 
+namespace yield_limits_tests
+{
 using namespace antiform::continuum;
 using namespace antiform::test;
 using Match = DruckerPragerParameters::Match;
@@ -238,3 +240,4 @@ TEST(YieldLimits, DruckerPragerConesDifferInPlaneStrainAsTheyShould)
       EXPECT_NEAR(in_plane_radius(s) / expected, 1., 1e-8);
     }
 }
+} // namespace yield_limits_tests

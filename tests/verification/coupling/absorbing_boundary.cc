@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::testing
+namespace antiform::testing::absorbing_boundary_tests
 {
 using namespace coupling;
 
@@ -487,4 +487,4 @@ TEST(AbsorbingBoundary, ServesAMeshJoinedToGrains)
   EXPECT_LT(worst, 1e-6);
   EXPECT_GT(ledger.back().damping, 0.3 * all);
 }
-} // namespace antiform::testing
+} // namespace antiform::testing::absorbing_boundary_tests

@@ -12,7 +12,7 @@
 
 #include <string>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::constraint_tests
 {
 namespace
 {
@@ -305,4 +305,4 @@ TEST(BridgingDomain, RunsWithTheSameBitsOnOneAndTwoThreads)
   EXPECT_TRUE(one == two);
   EXPECT_GT(one.values.size(), 1000u);
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::constraint_tests

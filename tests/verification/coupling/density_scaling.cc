@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::density_scaling_tests
 {
 namespace
 {
@@ -114,4 +114,4 @@ TEST(DensityScaling, StaysBoundedBelowTheLimit)
     EXPECT_GE(2. / largest_frequency(model, true), (1. - 1e-3) * step);
   }
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::density_scaling_tests

@@ -11,7 +11,7 @@
 
 #include <array>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::lattice_patch_tests
 {
 namespace
 {
@@ -243,4 +243,4 @@ TEST(LatticePatch, AgreesWithTheExplicitConstraintAtRest)
   run.advance(1);
   EXPECT_LE(run.unbalanced_ratio(), 1e-8);
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::lattice_patch_tests

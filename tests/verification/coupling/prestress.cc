@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::prestress_tests
 {
 namespace
 {
@@ -109,4 +109,4 @@ TEST(PrestressedColumn, UnconstrainedForcesMisjudgeIt)
   EXPECT_GT(ratio, 1e-3);
   EXPECT_GT(damped.error, 3e-3);
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::prestress_tests

@@ -11,7 +11,7 @@
 
 #include <array>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::random_patch_tests
 {
 namespace
 {
@@ -233,4 +233,4 @@ TEST(RandomPatch, FailsWithASofterMesh)
   EXPECT_GT(error.stress, 5e-2);
   EXPECT_GT(error.force, 6e-2);
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::random_patch_tests

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace antiform::coupling::test
+namespace antiform::coupling::test::rigid_motion_tests
 {
 namespace
 {
@@ -125,4 +125,4 @@ TEST(RigidMotion, MovesTheModelStatically)
   // Condition (1e6, with the weights' floor of 1e-3) times round-off times motion 30.
   EXPECT_LE(worst, 1e-8);
 }
-} // namespace antiform::coupling::test
+} // namespace antiform::coupling::test::rigid_motion_tests

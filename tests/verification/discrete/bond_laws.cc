@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::bond_laws_tests
 {
 namespace
 {
@@ -314,4 +314,4 @@ TEST(BondLaws, EnergyClosesWhileBondsBreakAndContactsSlide)
     EXPECT_GT(closure.error_without_fracture, 1e-2); // which sees a missing term
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::bond_laws_tests

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::bonded_assembly_tests
 {
 namespace
 {
@@ -206,4 +206,4 @@ TEST(TriangularLattice, RelaxedPatchHasTheLatticesModuli)
     EXPECT_NEAR(shear.xx / shear.xy, 0., 0.01) << turned;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::bonded_assembly_tests

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::damage_path_tests
 {
 namespace
 {
@@ -381,4 +381,4 @@ TEST(RemovedJoint, HandsOverToALinearContactWithTheInstalledGap)
     EXPECT_NEAR(contact_force(-1e-3), -joint_force, 1e-11);
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::damage_path_tests

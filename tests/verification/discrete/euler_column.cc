@@ -12,7 +12,7 @@
 #include <array>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::euler_column_tests
 {
 namespace
 {
@@ -254,4 +254,4 @@ TEST(BondedColumn, BucklesAtTheEulerLoad)
     EXPECT_EQ(column.n_unstable(), fraction < 1. ? 0 : 1) << fraction;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::euler_column_tests

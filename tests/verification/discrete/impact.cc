@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::impact_tests
 {
 namespace
 {
@@ -271,4 +271,4 @@ TEST(LocalDamping, LeavesAGrainWithoutForceAlone)
     run.advance(0.1);
   EXPECT_EQ(run.sample.grains.velocity_x[0], 1.);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::impact_tests

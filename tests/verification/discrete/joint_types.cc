@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::joint_types_tests
 {
 namespace
 {
@@ -231,4 +231,4 @@ TEST(StrengthScatter, StaysWithAJointThatHasLostAnElement)
   load(pair, {1.501 / k, 0., 0.});
   EXPECT_EQ(pair.cracks.size(), 2u);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::joint_types_tests

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace lattice_moduli_tests
+{
 using namespace antiform;
 using namespace antiform::discrete;
 
@@ -86,3 +88,4 @@ TEST_P(LatticeModuli, OfTheFirstRockAreThePrintedOnes)
   EXPECT_NEAR(e_2d / FlatJoint{}.effective_modulus, 1.4586, 5e-5);
   EXPECT_NEAR(r.density_factor, M_PI / (2. * std::sqrt(3.)), 1e-12);
 }
+} // namespace lattice_moduli_tests

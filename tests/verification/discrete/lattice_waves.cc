@@ -9,7 +9,7 @@
 #include <cmath>
 #include <complex>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::lattice_waves_tests
 {
 namespace
 {
@@ -216,4 +216,4 @@ TEST(LatticeWaves, PressureBranchIsItsClosedForm)
     EXPECT_NEAR(branches(k)[pressure].omega / exact, 1., 1e-12) << k;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::lattice_waves_tests

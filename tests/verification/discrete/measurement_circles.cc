@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+namespace measurement_circles_tests
+{
 using namespace antiform;
 using namespace antiform::discrete;
 using namespace antiform::discrete::test;
@@ -240,3 +242,4 @@ TEST(MeasurementCircle, FollowsTheRock)
   const MeasurementCircle empty = follow(sample.grains, {{100., 5.}, 3.});
   EXPECT_EQ(empty.centre.x, 100.);
 }
+} // namespace measurement_circles_tests

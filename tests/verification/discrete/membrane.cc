@@ -10,7 +10,7 @@
 #include <cmath>
 #include <set>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::membrane_tests
 {
 namespace
 {
@@ -145,4 +145,4 @@ TEST(Membrane, BodyInAClosedRingHasItsPressure)
   EXPECT_NEAR(yy / area, -pressure, 0.01 * pressure);
   EXPECT_NEAR(xy / area, 0., 0.01 * pressure);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::membrane_tests

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::oblique_impact_tests
 {
 namespace
 {
@@ -215,4 +215,4 @@ TEST(ChungOoi4, GrazingImpactLosesTwiceTheNormalMomentumTimesFriction)
         << degrees;
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::oblique_impact_tests

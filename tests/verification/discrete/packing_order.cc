@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::packing_order_tests
 {
 TEST(PackingOrder, ChangesNoFigureAndNoBond)
 {
@@ -58,4 +58,4 @@ TEST(PackingOrder, ChangesNoFigureAndNoBond)
   EXPECT_EQ(bonds[0], bonds[1]);
   EXPECT_GT(bonds[0].size(), 2 * tile.disks.size());
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::packing_order_tests

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+namespace packing_quality_tests
+{
 using namespace antiform;
 using namespace antiform::discrete;
 using namespace antiform::discrete::test;
@@ -172,3 +174,4 @@ TEST(PackingQuality, GrainsThatDoNotTouchHaveNoForcesToKeep)
                        sample.joints, none));
   EXPECT_TRUE(sample.joints.initial_gap.empty());
 }
+} // namespace packing_quality_tests

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::rigid_motion_tests
 {
 namespace
 {
@@ -223,4 +223,4 @@ TEST(JointForces, BalanceForcesAndMomentsOfEveryJoint)
     EXPECT_NEAR(f.torque1 + f.torque2 + cross(branch, {f.x, f.y}), 0., 1e-13 * scale);
   }
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::rigid_motion_tests

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::rolling_disk_tests
 {
 namespace
 {
@@ -224,4 +224,4 @@ TEST(ViscoElasticPair, CreepsUnderASuddenLoadAsKelvinsBody)
   EXPECT_NEAR(-test.grains().displacement_y[1] / rest, 1., 1e-3);
   EXPECT_LT(worst, 1e-2 * rest); // the dashpot's delay, 2 beta omega dt / 2 at first
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::rolling_disk_tests

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::servo_tests
 {
 namespace
 {
@@ -125,4 +125,4 @@ TEST(Servo, HoldsItsPressureThroughElasticLoadingWithoutOvershoot)
   std::printf("overshoot %.3g, off by %.3g in loading, axial %.3g\n", overshoot, off,
               last / pressure);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::servo_tests

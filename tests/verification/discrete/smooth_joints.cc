@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::smooth_joints_tests
 {
 namespace
 {
@@ -339,4 +339,4 @@ TEST(SmoothJoint, EnergyClosesWhileFracturesSlideAndPairsChange)
   EXPECT_LT(error, 1e-3); // limit of the ledger
   EXPECT_GT(error_without_slip, 1e-2);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::smooth_joints_tests

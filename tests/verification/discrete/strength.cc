@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-namespace antiform::discrete::test
+namespace antiform::discrete::test::strength_tests
 {
 namespace
 {
@@ -233,4 +233,4 @@ TEST(JointStrength, CrackRecordSaysWhereAndHow)
   const Vec2 place = R1 * rotated(n, -0.025) + (-2. / 3. * R1) * perpendicular(n);
   EXPECT_NEAR(norm(crack.place - place), 0., 1e-15);
 }
-} // namespace antiform::discrete::test
+} // namespace antiform::discrete::test::strength_tests
