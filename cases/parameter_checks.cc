@@ -345,6 +345,11 @@ void check_run(const Parameters &p, Findings &findings)
                             " driver solves the elastic continuum, and the layer is "
                             "grains. Give quasi-static, or 'Layer/Representation' = "
                             "'continuum'."});
+  if (p.run.estimate_rate_error && p.has("layer") &&
+      (p.run.driver != "quasi-static" || p.layer.representation != "grains"))
+    findings.push_back({{"Run/Estimate loading-rate error", "Run/Driver"},
+                        "there is no loading-rate error to estimate without grains that "
+                        "the quasi-static driver shortens to a peak. Give false."});
   if (p.run.driver == "static" && p.has("walls") && p.run.end_shortening == 0.)
     findings.push_back(
         {{"Run/End shortening", "Run/Driver"},

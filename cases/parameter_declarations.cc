@@ -246,6 +246,9 @@ void declare(RunParameters &run, Declarations &entries)
   entries.number("Longest shortening", run.longest_shortening,
                  "The run ends here at the latest, peak or not [-].",
                  Number::above(0.).below(1.));
+  entries.flag("Estimate loading-rate error", run.estimate_rate_error,
+               "Drivers in time: after the run, repeat the last stretch before the peak "
+               "at half the loading rate and print how far the peak moves.");
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));

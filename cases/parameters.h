@@ -229,6 +229,7 @@ struct RunParameters
   double stress_ratio_of_peak =
       0.; ///< end when the stress has fallen to this share of it
   double longest_shortening = 0.02; ///< give up here [-]
+  bool estimate_rate_error = false; ///< the way to the peak again at half the rate
   int load_steps = 10;              ///< static driver
   int modes = 4;                    ///< buckling driver
   std::string strain = "small";     ///< small | finite; static driver

@@ -216,6 +216,12 @@ void Recorder::append_cracks()
   }
 }
 
+bool Recorder::has_passed_peak() const
+{
+  return peak_strain_ > 0. && (last_.strain - peak_strain_ >= settled ||
+                               last_.stress <= 0.9 * peak_stress_);
+}
+
 void Recorder::look_for_end(const Sample &sample)
 {
   const RunParameters &run = scene_.parameters.run;
@@ -230,8 +236,7 @@ void Recorder::look_for_end(const Sample &sample)
   const double fallen = std::max(fallen_transits * transit, fallen_samples * between);
   if (run.stress_ratio_of_peak > 0. && sample.strain - last_high_strain_ >= fallen)
     why_finished_ = "the wanted share of the peak stress";
-  const double below = sample.strain - peak_strain_;
-  const bool peaked = peak_strain_ > 0. && below >= settled;
+  const bool peaked = peak_strain_ > 0. && sample.strain - peak_strain_ >= settled;
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
   else if (why_finished_.empty() && sample.strain >= run.longest_shortening)

@@ -41,6 +41,11 @@ public:
   /// Share of the run done, as far as it can be told [-].
   double share_done() const;
 
+  /// Largest axial stress so far, in the direction of loading [Pa].
+  double peak_stress() const { return peak_stress_; }
+  /// The largest stress lies so far back that it counts as the peak.
+  bool has_passed_peak() const;
+
   /// Fields of the present state, at the end of a run.
   void write_fields();
   void fill(Summary &summary) const;
