@@ -135,6 +135,9 @@ std::vector<Effect> list_effects(const Parameters &p)
                         grains ? no_steps : "nothing is grains"));
   list.push_back(choose("unbalanced force", steps,
                         "damping and the record of equilibrium need it", no_steps));
+  list.push_back(choose("load steps", p.has("walls") && p.walls.steps_and_relaxes(),
+                        "the walls wait for the forces to balance",
+                        "walls at a constant rate, or none"));
   list.push_back(
       choose("record", steps, "history, cracks and fields", "written after each solve"));
   list.push_back(choose("measurement circles", p.has("measurement circles"),

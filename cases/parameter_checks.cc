@@ -345,6 +345,17 @@ void check_run(const Parameters &p, Findings &findings)
                             " driver solves the elastic continuum, and the layer is "
                             "grains. Give quasi-static, or 'Layer/Representation' = "
                             "'continuum'."});
+  if (p.has("walls") && p.walls.steps_and_relaxes())
+  {
+    if (!p.has("damping") || p.run.driver != "quasi-static")
+      findings.push_back({{"Walls/Loading", "Components", "Run/Driver"},
+                          "forces come to balance under damping only, with the "
+                          "quasi-static driver. Add 'damping' to 'Components', or give "
+                          "'constant rate'."});
+    if (p.walls.action == "pull")
+      findings.push_back({{"Walls/Loading", "Walls/Action"},
+                          "grips move at a constant rate only. Give 'constant rate'."});
+  }
   if (p.run.estimate_rate_error && p.has("layer") &&
       (p.run.driver != "quasi-static" || p.layer.representation != "grains"))
     findings.push_back({{"Run/Estimate loading-rate error", "Run/Driver"},

@@ -140,6 +140,20 @@ void declare(WallsParameters &walls, Declarations &entries)
       "Axial wave transits of the layer in which the walls shorten it by 1e-3: "
       "slowness; 300 up to the peak bring it within 5 % [-].",
       Number::above(0.));
+  entries.choice("Loading", walls.loading,
+                 "constant rate: the walls move all the time; step and relax: they "
+                 "advance by load steps, each in one transit, and stand still after "
+                 "each until the forces balance.",
+                 "constant rate|step and relax");
+  entries.number("Load step", walls.load_step,
+                 "Step and relax: shortening in one load step; some 2 % of that at the "
+                 "peak [-].",
+                 Number::above(0.).below(0.1));
+  entries.number("Relaxation tolerance", walls.relaxation_tolerance,
+                 "Step and relax: mean unbalanced force over the mean force of a joint "
+                 "below which the walls go on, the largest below 0.1; ten times it when a "
+                 "collapse has taken 100 transits [-].",
+                 Number::above(0.).below(0.1));
   entries.number("Ramp", walls.ramp, "Transits in which the walls come up to speed [-].",
                  Number::at_least(0.));
   entries.choice(

@@ -163,10 +163,15 @@ struct GravityParameters
 /// End walls: rigid, frictionless, over the full height; both move inward.
 struct WallsParameters
 {
+  std::string loading = "constant rate"; ///< constant rate | step and relax
+  double load_step = 4e-5;               ///< shortening of one, step and relax [-]
+  double relaxation_tolerance = 1e-4;    ///< unbalanced ratio, step and relax [-]
   double transits_per_millistrain = 300.; ///< axial wave transits of the layer per 1e-3
   double ramp = 20.;            ///< transits over which the walls come up to speed
   std::string action = "press"; ///< press | pull (by grips)
   double grip_layers = 7.5;     ///< width of a grip over the mean grain diameter
+
+  bool steps_and_relaxes() const { return loading == "step and relax"; }
 };
 
 /// A pressure on the sides of a specimen, and on its ends before they shorten it.

@@ -27,6 +27,8 @@ Parameters at_half_rate(const Parameters &parameters)
   half.run.estimate_rate_error = false;
   half.walls.transits_per_millistrain *= 2.;
   half.output.samples_per_millistrain *= 2;
+  half.walls.load_step *= 0.5;
+  half.walls.relaxation_tolerance *= 0.5;
   half.run.stress_ratio_of_peak = std::max(0.9, half.run.stress_ratio_of_peak);
   return half;
 }

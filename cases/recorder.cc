@@ -232,7 +232,10 @@ void Recorder::look_for_end(const Sample &sample)
     return;
   }
   const double transit = 1e-3 / scene_.parameters.walls.transits_per_millistrain;
-  const double between = 1e-3 / scene_.parameters.output.samples_per_millistrain;
+  const double between =
+      scene_.load_steps != nullptr
+          ? scene_.parameters.walls.load_step
+          : 1e-3 / scene_.parameters.output.samples_per_millistrain;
   const double fallen = std::max(fallen_transits * transit, fallen_samples * between);
   if (run.stress_ratio_of_peak > 0. && sample.strain - last_high_strain_ >= fallen)
     why_finished_ = "the wanted share of the peak stress";
@@ -340,6 +343,11 @@ void Recorder::fill(Summary &summary) const
     const auto &would = scene_.grains->state.joints.would_break;
     const auto n_would = std::count(would.begin(), would.end(), 1);
     results["unbreakable_joints_over_strength"] = {static_cast<double>(n_would), "-"};
+  }
+  if (const coupling::StepAndRelax *const loading = scene_.load_steps)
+  {
+    results["load_steps"] = {static_cast<double>(loading->n_load_steps()), "-"};
+    results["collapses"] = {static_cast<double>(loading->n_collapses()), "-"};
   }
   report_fractures(scene_, summary);
   summary.energy = {

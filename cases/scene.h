@@ -12,6 +12,7 @@
 #include "coupling/mesh_components.h"
 #include "coupling/simulation.h"
 #include "coupling/specimen_components.h"
+#include "coupling/step_and_relax.h"
 #include "discrete/contacts.h"
 
 #include <mpi.h>
@@ -52,6 +53,7 @@ struct Scene
   coupling::Walls *wall_motion = nullptr;
   coupling::Grips *grips = nullptr;
   coupling::MembraneLoad *membrane = nullptr;
+  coupling::StepAndRelax *load_steps = nullptr; ///< null at a constant rate
 
   coupling::ConstrainedForces *constrained = nullptr;
   bool breakage_components = false; ///< friction, contacts and search have joined

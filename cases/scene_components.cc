@@ -37,6 +37,7 @@ enum Rank
   rank_base = 90,
   rank_constrained = 95,
   rank_damping = 96,
+  rank_load_steps = 98,
   rank_absorbing = 97, // after the mesh has been kicked, with or without damping
   rank_motion = 50
 };
@@ -158,6 +159,11 @@ void add_loads(Scene &scene)
 
 namespace
 {
+/// Transits after which forces that do not come to balance are given up.
+constexpr double longest_relaxation = 2000.;
+/// Transits after which a relaxation counts as a collapse.
+constexpr double patience = 100.;
+
 /// 0 to 1 within @p ramp, without a jump of the acceleration.
 double ramp_up(const double t, const double ramp)
 {
@@ -224,6 +230,26 @@ std::array<std::vector<std::int32_t>, 2> gripped_grains(const Scene &scene)
   return held;
 }
 
+/// Each wall advances in one transit, so that the wave it sends is no steeper than the
+/// load step.
+void add_load_steps(Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  const double transit = scene.transit_time / scene.simulation->clock().dt;
+  StepAndRelax::Options options;
+  options.advance = std::max<std::int64_t>(1, std::llround(transit));
+  options.speed = 0.5 * p.walls.load_step * scene.geometry.length() /
+                  (static_cast<double>(options.advance) * scene.simulation->clock().dt);
+  options.tolerance = p.walls.relaxation_tolerance;
+  options.patience = std::llround(patience * transit);
+  options.longest = std::llround(longest_relaxation * transit);
+  if (const ConfinementParameters *const confinement = p.confinement())
+    options.begin = 2. * confinement->ramp * scene.transit_time;
+  scene.load_steps = &scene.simulation->add(
+      std::make_unique<StepAndRelax>(*scene.constrained, options), {Stage::damp},
+      rank_load_steps, "load steps", reason_for(p, "load steps"));
+}
+
 void add_walls(Scene &scene)
 {
   const Parameters &p = scene.parameters;
@@ -236,6 +262,8 @@ void add_walls(Scene &scene)
   const double full = 0.5 * scene.shortening_rate * length;
   const double ramp = p.walls.ramp * scene.transit_time;
   const auto speed = [full, ramp](const double t) { return full * ramp_up(t, ramp); };
+  const auto wall_speed = [speed, &scene](const double t)
+  { return scene.load_steps != nullptr ? scene.load_steps->speed() : speed(t); };
   const std::string reason = reason_for(p, "walls");
   GrainState *const grains = scene.grains ? &scene.grains->state : nullptr;
   if (pulls)
@@ -247,8 +275,10 @@ void add_walls(Scene &scene)
   }
   scene.wall_motion = &scene.simulation->add(
       std::make_unique<Walls>(scene.walls, grains, scene.mesh ? &*scene.mesh : nullptr,
-                              scene.bridging.get(), speed),
+                              scene.bridging.get(), wall_speed),
       {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls", reason);
+  if (p.walls.steps_and_relaxes())
+    add_load_steps(scene);
   if (const ConfinementParameters *const confinement = p.confinement())
   {
     // Ten times what the pressure's own strain needs in its ramp: room to follow breaks.

@@ -90,8 +90,13 @@ int SteppedRun::operator()(coupling::StateReader *state)
         std::make_unique<CircleRecord>(*scene_, options_.output, options_.resume),
         {coupling::Stage::sample}, 1, "measurement circles",
         reason_for(parameters_, "measurement circles"));
-  scene_->simulation->set_sampler([this](const coupling::Clock &clock)
-                                  { return recorder_->is_due(clock); });
+  if (const coupling::StepAndRelax *const loading = scene_->load_steps)
+    scene_->simulation->set_sampler([loading](const coupling::Clock &)
+                                    { return loading->is_recording(); },
+                                    [loading] { return loading->is_looking(); });
+  else
+    scene_->simulation->set_sampler([this](const coupling::Clock &clock)
+                                    { return recorder_->is_due(clock); });
   if (state != nullptr)
   {
     visit_state(*state);
@@ -182,8 +187,10 @@ void SteppedRun::describe()
     log_.line("step " + coupling::shortest_text(dt) + " s, " +
               std::to_string(std::llround(s.transit_time / dt)) +
               " steps an axial transit, " +
-              std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
-              " steps per 1e-3 of shortening");
+              (s.load_steps != nullptr
+                   ? "walls that wait for balance after each load step"
+                   : std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
+                         " steps per 1e-3 of shortening"));
 }
 
 SteppedRun::Pause

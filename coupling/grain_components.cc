@@ -60,7 +60,7 @@ void Bonds::run(const Stage, const Clock &clock)
   std::vector<Crack> found;
   const StepTime now{static_cast<std::uint64_t>(clock.step), clock.time, clock.dt};
   evaluate_bonds(state_.grains, state_.joints, now, state_.breaking ? &found : nullptr,
-                 clock.sample_due);
+                 clock.balance_due);
   add_cracks(found, state_, on_first_crack);
 }
 

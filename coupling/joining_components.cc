@@ -19,12 +19,12 @@ void ConstrainedForces::run(const Stage, const Clock &clock)
                               grains_->grains.force_x, grains_->grains.force_y,
                               mesh_->force);
   if (clock.sample_due)
-    measure();
+    ratio_ = measure().mean;
 }
 
-void ConstrainedForces::measure()
+UnbalancedRatio ConstrainedForces::measure() const
 {
-  double free = 0., carried = 0.;
+  double free = 0., largest = 0., carried = 0.;
   if (grains_ != nullptr)
   {
     const Grains &g = grains_->grains;
@@ -32,7 +32,9 @@ void ConstrainedForces::measure()
     for (std::size_t i = 0; i < g.size(); ++i)
       if (g.inverse_mass[i] > 0.)
       {
-        free += std::hypot(g.force_x[i], g.force_y[i]);
+        const double force = std::hypot(g.force_x[i], g.force_y[i]);
+        free += force;
+        largest = std::max(largest, force);
         n_free += 1.;
       }
     free /= std::max(1., n_free);
@@ -48,8 +50,10 @@ void ConstrainedForces::measure()
           s.force.begin()[i] * s.force.begin()[i];
     free = std::sqrt(dealii::Utilities::MPI::sum(free, s.communicator()));
     carried = std::sqrt(dealii::Utilities::MPI::sum(carried, s.communicator()));
+    largest = free;
   }
-  ratio_ = carried > 0. ? free / carried : 0.;
+  return carried > 0. ? UnbalancedRatio{free / carried, largest / carried}
+                      : UnbalancedRatio{};
 }
 
 LocalDamping::LocalDamping(GrainState *grains,

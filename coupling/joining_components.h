@@ -33,6 +33,13 @@ private:
   MeshState &mesh_;
 };
 
+/// Unbalanced forces over the mean force of a joint [-]; without grains both are the norm
+/// of the mesh' free forces over that of its internal forces.
+struct UnbalancedRatio
+{
+  double mean = 0., largest = 0.;
+};
+
 /// Turns the forces into the constrained forces r = f - C^T L, which vanish at rest on
 /// grains and nodes that carry multipliers, and records the unbalanced ratio. Any part
 /// may be absent.
@@ -54,9 +61,10 @@ public:
   /// Mean free force over mean joint force of the last sample [-]; without grains the
   /// norm of the mesh' free forces over that of its internal forces.
   double unbalanced_ratio() const { return ratio_; }
+  /// Of the present forces; after run() in a step for which Clock::balance_due. Collective.
+  UnbalancedRatio measure() const;
 
 private:
-  void measure();
 
   GrainState *grains_;
   MeshState *mesh_;

@@ -36,6 +36,7 @@ void Simulation::step()
 {
   using Timer = std::chrono::steady_clock;
   clock_.sample_due = due_ && due_(clock_);
+  clock_.balance_due = clock_.sample_due || (balance_ && balance_());
   for (std::size_t s = 0; s < n_stages; ++s)
     for (Entry *entry : at_stage_[s])
     {

@@ -19,6 +19,7 @@ struct Clock
   double time = 0.;        ///< [s]; inertial time when densities are scaled
   double dt = 0.;          ///< [s]
   bool sample_due = false; ///< this step is recorded: keep what a record needs
+  bool balance_due = false; ///< its forces are measured: keep those of the joints
 };
 
 /// The stages of a step, in their order.
@@ -108,7 +109,14 @@ public:
   void later(std::function<void()> action) { later_.push_back(std::move(action)); }
 
   const Clock &clock() const { return clock_; }
-  void set_sampler(std::function<bool(const Clock &)> due) { due_ = std::move(due); }
+  /// \param due     whether a step is recorded
+  /// \param balance whether its forces are measured though it is not; null: never
+  void set_sampler(std::function<bool(const Clock &)> due,
+                   std::function<bool()> balance = nullptr)
+  {
+    due_ = std::move(due);
+    balance_ = std::move(balance);
+  }
   /// This rank's share of the ledger; the sum over ranks is the model's.
   Energies energies() const;
   std::vector<EffectCount> effects() const;
@@ -134,5 +142,6 @@ private:
   std::array<std::vector<Entry *>, n_stages> at_stage_;
   std::vector<std::function<void()>> later_;
   std::function<bool(const Clock &)> due_;
+  std::function<bool()> balance_;
 };
 } // namespace antiform::coupling

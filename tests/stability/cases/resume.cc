@@ -133,6 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"InAMembrane",
                 {"Components=layer, walls, membrane, damping", "Layer/Length ratio=3",
                  "Layer/Grains across=10", "Membrane/Pressure=5e6", "Membrane/Ramp=5"}},
+        Variant{"StepAndRelax", {"Walls/Loading=step and relax"}},
         Variant{"Pulled",
                 {"Components=layer, walls, damping", "Walls/Action=pull",
                  "Layer/Length ratio=5", "Layer/Grains across=8",

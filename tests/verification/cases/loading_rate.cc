@@ -82,7 +82,7 @@ TEST(LoadingRateEstimate, GoesOnWhereItWasInterrupted)
 TEST(LoadingRateEstimate, IsRefusedOrMissedWhereThereIsNoPeak)
 {
   const TemporaryFolder folder;
-  for (const std::string &entry : {"Run/Driver=dynamic", "Layer/Representation=continuum"})
+  for (const char *entry : {"Run/Driver=dynamic", "Layer/Representation=continuum"})
   {
     const Outcome outcome = run_program("check " + tiny_deck() + set({estimate, entry}));
     EXPECT_EQ(outcome.status, 1);
@@ -90,9 +90,8 @@ TEST(LoadingRateEstimate, IsRefusedOrMissedWhereThereIsNoPeak)
         << outcome.output;
   }
   const std::string directory = folder.path("no-peak");
-  const Outcome outcome =
-      run_program(uniaxial + " -o " + directory +
-                  set(fast({estimate, "Run/End shortening=2e-4"})));
+  const Outcome outcome = run_program(uniaxial + " -o " + directory +
+                                      set(fast({estimate, "Run/End shortening=2e-4"})));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("no estimate of the loading-rate error"),
             std::string::npos);
