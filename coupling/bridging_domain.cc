@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace antiform::coupling
 {
@@ -99,80 +98,20 @@ BridgingDomain::BridgingDomain(const discrete::Grains &grains,
                                const discrete::Joints &joints,
                                const continuum::ElasticSolid &solid,
                                OverlapWeight weight,
-                               const double smallest_mass)
+                               const double smallest_mass,
+                               const BridgingOptions &options)
     : weight_(std::move(weight))
     , mesh_mass_(weighted_mass(solid))
+    , rows_(constraint_rows(grains, solid, weight_, smallest_mass, options.multipliers))
+    , grain_columns_(transposed(rows_.grains, rows_.overlap_grains.size()))
+    , mesh_columns_(transposed(rows_.nodes, rows_.node_dofs.size()))
+    , node_of_dof_(solid.dof_handler().n_dofs(), -1)
+    , multiplier_(n_multipliers(), 0.)
 {
-  build_rows(grains, solid, smallest_mass);
-  weigh_masses(grains, joints, solid);
-}
-
-void BridgingDomain::build_rows(const discrete::Grains &grains,
-                                const continuum::ElasticSolid &solid,
-                                const double smallest_mass)
-{
-  // By vertex: the grains that press on its multiplier, and the nodes that answer.
-  struct Row
-  {
-    std::uint32_t dof_y = 0;
-    double mass = 0.;
-    std::vector<std::pair<std::int32_t, double>> grains;
-    std::map<std::uint32_t, double> nodes; // by x dof
-  };
-  std::map<std::uint32_t, Row> rows; // by x dof of the vertex: a fixed order
-  std::map<std::uint32_t, std::uint32_t> y_of_x;
-  for (std::size_t i = 0; i < grains.size(); ++i)
-  {
-    const Vec2 x = grains.reference(i);
-    if (!weight_.in_overlap(x))
-      continue;
-    const auto index = static_cast<std::int32_t>(overlap_grains_.size());
-    overlap_grains_.push_back(static_cast<std::int32_t>(i));
-    const continuum::PointEvaluation vertex = solid.vertex_values(to_point(x));
-    const continuum::PointEvaluation shape = solid.shape_values(to_point(x));
-    for (std::size_t a = 0; a < vertex.value.size(); ++a)
-    {
-      Row &row = rows[static_cast<std::uint32_t>(vertex.dof_x[a])];
-      row.dof_y = static_cast<std::uint32_t>(vertex.dof_y[a]);
-      const double m = grains.mass[i] * vertex.value[a];
-      row.mass += m;
-      row.grains.emplace_back(index, m);
-      for (std::size_t k = 0; k < shape.value.size(); ++k)
-      {
-        row.nodes[static_cast<std::uint32_t>(shape.dof_x[k])] -= m * shape.value[k];
-        y_of_x[static_cast<std::uint32_t>(shape.dof_x[k])] =
-            static_cast<std::uint32_t>(shape.dof_y[k]);
-      }
-    }
-  }
-
-  std::map<std::uint32_t, std::int32_t> node_index;
-  for (const auto &[dof_x, dof_y] : y_of_x)
-  {
-    node_index[dof_x] = static_cast<std::int32_t>(node_dofs_.size());
-    node_dofs_.push_back({dof_x, dof_y});
-  }
-  for (const auto &[dof_x, row] : rows)
-  {
-    if (row.mass <= smallest_mass)
-      continue;
-    for (const auto &[grain, m] : row.grains)
-      grain_rows_.add(grain, m);
-    grain_rows_.close_row();
-    for (const auto &[node, m] : row.nodes)
-      mesh_rows_.add(node_index[node], m);
-    mesh_rows_.close_row();
-    const dealii::Point<2> p = solid.support_point(dof_x);
-    row_names_.push_back("vertex (" + std::to_string(p[0]) + " m, " +
-                         std::to_string(p[1]) + " m)");
-  }
-  grain_columns_ = transposed(grain_rows_, overlap_grains_.size());
-  mesh_columns_ = transposed(mesh_rows_, node_dofs_.size());
-  node_of_dof_.assign(solid.dof_handler().n_dofs(), -1);
-  for (std::size_t k = 0; k < node_dofs_.size(); ++k)
-    for (const std::uint32_t dof : node_dofs_[k])
+  for (std::size_t k = 0; k < rows_.node_dofs.size(); ++k)
+    for (const std::uint32_t dof : rows_.node_dofs[k])
       node_of_dof_[dof] = static_cast<std::int32_t>(k);
-  multiplier_.assign(n_multipliers(), 0.);
+  weigh_masses(grains, joints, solid);
 }
 
 void BridgingDomain::weigh_masses(const discrete::Grains &grains,
@@ -190,7 +129,7 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
 
   const continuum::Vector whole = mesh_mass_;
   // The surplus is the mass of half a grain layer; reflection triples if it stays.
-  for (const std::int32_t i : overlap_grains_)
+  for (const std::int32_t i : rows_.overlap_grains)
   {
     const double surplus = grains.mass[i] * (mu_[i] - at_centre[i]);
     const continuum::PointEvaluation shape =
@@ -207,8 +146,8 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
 
 bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
 {
-  for (std::size_t k = 0; k < overlap_grains_.size(); ++k)
-    if (grain_inverse_mass_[k] != grains.inverse_mass[overlap_grains_[k]])
+  for (std::size_t k = 0; k < rows_.overlap_grains.size(); ++k)
+    if (grain_inverse_mass_[k] != grains.inverse_mass[rows_.overlap_grains[k]])
       return false;
   return true;
 }
@@ -216,14 +155,14 @@ bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
 void BridgingDomain::factorise(const discrete::Grains &grains,
                                const continuum::Vector &inverse_mass)
 {
-  const auto n = static_cast<int>(grain_rows_.n_rows());
-  grain_inverse_mass_.resize(overlap_grains_.size());
-  for (std::size_t k = 0; k < overlap_grains_.size(); ++k)
-    grain_inverse_mass_[k] = grains.inverse_mass[overlap_grains_[k]];
-  node_inverse_mass_.resize(node_dofs_.size());
-  for (std::size_t k = 0; k < node_dofs_.size(); ++k)
-    node_inverse_mass_[k] = {inverse_mass(node_dofs_[k][0]),
-                             inverse_mass(node_dofs_[k][1])};
+  const auto n = static_cast<int>(rows_.grains.n_rows());
+  grain_inverse_mass_.resize(rows_.overlap_grains.size());
+  for (std::size_t k = 0; k < rows_.overlap_grains.size(); ++k)
+    grain_inverse_mass_[k] = grains.inverse_mass[rows_.overlap_grains[k]];
+  node_inverse_mass_.resize(rows_.node_dofs.size());
+  for (std::size_t k = 0; k < rows_.node_dofs.size(); ++k)
+    node_inverse_mass_[k] = {inverse_mass(rows_.node_dofs[k][0]),
+                             inverse_mass(rows_.node_dofs[k][1])};
 
   std::vector<Eigen::Triplet<double>> triplets;
   const auto add_products = [&](const SparseRows &columns, const int offset,
@@ -248,7 +187,7 @@ void BridgingDomain::factorise(const discrete::Grains &grains,
   Eigen::SparseMatrix<double> matrix(2 * n, 2 * n);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   solver_.emplace(matrix, [this, n](const Eigen::Index row)
-                  { return row_names_[row % n] + (row < n ? ", x" : ", y"); });
+                  { return rows_.names[row % n] + (row < n ? ", x" : ", y"); });
 }
 
 template <class GrainField, class MeshField>
@@ -256,16 +195,17 @@ void BridgingDomain::apply(const GrainField &grain_field,
                            const MeshField &mesh_field,
                            std::vector<double> &b) const
 {
-  const auto n = static_cast<std::int64_t>(grain_rows_.n_rows());
+  const auto n = static_cast<std::int64_t>(rows_.grains.n_rows());
   b.resize(2 * n);
 #pragma omp parallel for schedule(static)
   for (std::int64_t r = 0; r < n; ++r)
   {
     Vec2 sum;
-    for (std::int32_t k = grain_rows_.begin[r]; k < grain_rows_.begin[r + 1]; ++k)
-      sum += grain_rows_.value[k] * grain_field(overlap_grains_[grain_rows_.column[k]]);
-    for (std::int32_t k = mesh_rows_.begin[r]; k < mesh_rows_.begin[r + 1]; ++k)
-      sum += mesh_rows_.value[k] * mesh_field(node_dofs_[mesh_rows_.column[k]]);
+    for (std::int32_t k = rows_.grains.begin[r]; k < rows_.grains.begin[r + 1]; ++k)
+      sum += rows_.grains.value[k] *
+             grain_field(rows_.overlap_grains[rows_.grains.column[k]]);
+    for (std::int32_t k = rows_.nodes.begin[r]; k < rows_.nodes.begin[r + 1]; ++k)
+      sum += rows_.nodes.value[k] * mesh_field(rows_.node_dofs[rows_.nodes.column[k]]);
     b[r] = sum.x;
     b[n + r] = sum.y;
   }
@@ -276,7 +216,7 @@ void BridgingDomain::apply_transposed(const std::vector<double> &L,
                                       const ToGrain &to_grain,
                                       const ToNode &to_node) const
 {
-  const std::size_t n = grain_rows_.n_rows();
+  const std::size_t n = rows_.grains.n_rows();
   const auto column_sum = [&L, n](const SparseRows &columns, const std::int64_t c)
   {
     Vec2 sum;
@@ -284,8 +224,8 @@ void BridgingDomain::apply_transposed(const std::vector<double> &L,
       sum += columns.value[k] * Vec2{L[columns.column[k]], L[n + columns.column[k]]};
     return sum;
   };
-  const auto n_grains = static_cast<std::int64_t>(overlap_grains_.size());
-  const auto n_nodes = static_cast<std::int64_t>(node_dofs_.size());
+  const auto n_grains = static_cast<std::int64_t>(rows_.overlap_grains.size());
+  const auto n_nodes = static_cast<std::int64_t>(rows_.node_dofs.size());
 #pragma omp parallel
   {
 #pragma omp for schedule(static) nowait
@@ -310,13 +250,13 @@ void BridgingDomain::project(discrete::Grains &grains, continuum::Vector &veloci
       multiplier_,
       [&](const std::int64_t c, const Vec2 &impulse)
       {
-        grains.velocity_x[overlap_grains_[c]] -= grain_inverse_mass_[c] * impulse.x;
-        grains.velocity_y[overlap_grains_[c]] -= grain_inverse_mass_[c] * impulse.y;
+        grains.velocity_x[rows_.overlap_grains[c]] -= grain_inverse_mass_[c] * impulse.x;
+        grains.velocity_y[rows_.overlap_grains[c]] -= grain_inverse_mass_[c] * impulse.y;
       },
       [&](const std::int64_t c, const Vec2 &impulse)
       {
-        v[node_dofs_[c][0]] -= node_inverse_mass_[c][0] * impulse.x;
-        v[node_dofs_[c][1]] -= node_inverse_mass_[c][1] * impulse.y;
+        v[rows_.node_dofs[c][0]] -= node_inverse_mass_[c][0] * impulse.x;
+        v[rows_.node_dofs[c][1]] -= node_inverse_mass_[c][1] * impulse.y;
       });
 }
 
@@ -325,7 +265,7 @@ double BridgingDomain::mesh_impulse(const std::size_t dof) const
   const std::int32_t c = node_of_dof_[dof];
   if (c < 0)
     return 0.;
-  const std::size_t offset = node_dofs_[c][0] == dof ? 0 : grain_rows_.n_rows();
+  const std::size_t offset = rows_.node_dofs[c][0] == dof ? 0 : rows_.grains.n_rows();
   double sum = 0.;
   for (std::int32_t k = mesh_columns_.begin[c]; k < mesh_columns_.begin[c + 1]; ++k)
     sum += mesh_columns_.value[k] * multiplier_[offset + mesh_columns_.column[k]];
@@ -354,13 +294,13 @@ void BridgingDomain::constrain_forces(const discrete::Grains &grains,
       L,
       [&](const std::int64_t c, const Vec2 &force)
       {
-        fx[overlap_grains_[c]] -= force.x;
-        fy[overlap_grains_[c]] -= force.y;
+        fx[rows_.overlap_grains[c]] -= force.x;
+        fy[rows_.overlap_grains[c]] -= force.y;
       },
       [&](const std::int64_t c, const Vec2 &force)
       {
-        F[node_dofs_[c][0]] -= force.x;
-        F[node_dofs_[c][1]] -= force.y;
+        F[rows_.node_dofs[c][0]] -= force.x;
+        F[rows_.node_dofs[c][1]] -= force.y;
       });
 }
 
@@ -378,12 +318,12 @@ double BridgingDomain::displacement_gap(const discrete::Grains &grains,
       },
       g);
   double largest = 0.;
-  const std::size_t n = grain_rows_.n_rows();
+  const std::size_t n = rows_.grains.n_rows();
   for (std::size_t r = 0; r < n; ++r)
   {
     double mass = 0.;
-    for (std::int32_t k = grain_rows_.begin[r]; k < grain_rows_.begin[r + 1]; ++k)
-      mass += grain_rows_.value[k];
+    for (std::int32_t k = rows_.grains.begin[r]; k < rows_.grains.begin[r + 1]; ++k)
+      mass += rows_.grains.value[k];
     largest = std::max({largest, std::abs(g[r]) / mass, std::abs(g[n + r]) / mass});
   }
   return largest;

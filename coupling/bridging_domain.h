@@ -2,6 +2,7 @@
 
 #include "continuum/elastic_solid.h"
 #include "coupling/constraint_solver.h"
+#include "coupling/multiplier_space.h"
 #include "coupling/overlap_weight.h"
 #include "discrete/grains.h"
 #include "discrete/joints.h"
@@ -11,38 +12,31 @@
 
 namespace antiform::coupling
 {
-/// Sparse rows: entries begin[r] .. begin[r+1] - 1 of row r.
-struct SparseRows
+/// Choices of a bridging domain.
+struct BridgingOptions
 {
-  std::vector<std::int32_t> begin{0};
-  std::vector<std::int32_t> column;
-  std::vector<double> value;
-
-  std::size_t n_rows() const { return begin.size() - 1; }
-  void add(const std::int32_t c, const double v)
-  {
-    column.push_back(c);
-    value.push_back(v);
-  }
-  void close_row() { begin.push_back(static_cast<std::int32_t>(column.size())); }
+  MultiplierSpace multipliers = MultiplierSpace::mesh;
 };
 
-/// Joins grains and mesh in an overlap (docs/theory/bridging_domain.md). The multiplier J
+/// Joins grains and mesh in an overlap (docs/theory/bridging.md). The multiplier J
 /// lives on a vertex of the mesh and demands, for x and for y,
 ///   g_J = sum_i m_i N_J(x_i) (d_i - sum_K N_K(x_i) U_K) = 0,
-/// the sum going over the grains of the overlap with their real masses. Rotations are
-/// free. Topology and reference positions are those of construction. One rank.
+/// the sum going over the grains of the overlap with their real masses; other spaces of
+/// multipliers take other functions than N_J. Rotations are free. Topology and reference
+/// positions are those of construction. One rank.
 class BridgingDomain
 {
 public:
   /// \param solid already weighted by weight.mesh()
   /// \param smallest_mass a vertex is a multiplier when the grains give it more than this
   ///                      mass; coupling design: 0.02 rho h^2 [kg]
+  /// Throws as constraint_rows() does.
   BridgingDomain(const discrete::Grains &grains,
                  const discrete::Joints &joints,
                  const continuum::ElasticSolid &solid,
                  OverlapWeight weight,
-                 double smallest_mass);
+                 double smallest_mass,
+                 const BridgingOptions &options = {});
 
   /// Mass weight of each grain: mu_i = max(w_D(x_i), w_D of its joints); the largest
   /// joint weight keeps the stable step of the uncoupled grains.
@@ -75,26 +69,23 @@ public:
   double displacement_gap(const discrete::Grains &grains,
                           const continuum::Vector &displacement) const;
 
-  std::size_t n_multipliers() const { return 2 * grain_rows_.n_rows(); }
+  std::size_t n_multipliers() const { return 2 * rows_.grains.n_rows(); }
   /// Grains that carry multipliers, ascending; the columns of grain_rows().
-  const std::vector<std::int32_t> &overlap_grains() const { return overlap_grains_; }
+  const std::vector<std::int32_t> &overlap_grains() const { return rows_.overlap_grains; }
   const OverlapWeight &weight() const { return weight_; }
   /// Constraint rows of the x components (those of y have the same values): multipliers
   /// by grains, and by mesh nodes; node k has the dofs node_dofs()[k] (x, y).
-  const SparseRows &grain_rows() const { return grain_rows_; }
-  const SparseRows &mesh_rows() const { return mesh_rows_; }
+  const SparseRows &grain_rows() const { return rows_.grains; }
+  const SparseRows &mesh_rows() const { return rows_.nodes; }
   const std::vector<std::array<std::uint32_t, 2>> &node_dofs() const
   {
-    return node_dofs_;
+    return rows_.node_dofs;
   }
 
 private:
   void weigh_masses(const discrete::Grains &grains,
                     const discrete::Joints &joints,
                     const continuum::ElasticSolid &solid);
-  void build_rows(const discrete::Grains &grains,
-                  const continuum::ElasticSolid &solid,
-                  double smallest_mass);
   /// b = C (grain field, mesh field): x multipliers, then y. The fields are functions of
   /// a grain's number and of a node's dofs.
   template <class GrainField, class MeshField>
@@ -110,14 +101,11 @@ private:
   OverlapWeight weight_;
   std::vector<double> mu_;
   continuum::Vector mesh_mass_;
-  std::vector<std::int32_t> overlap_grains_;
-  SparseRows grain_rows_, mesh_rows_;       ///< by multiplier
+  ConstraintRows rows_;                     ///< by multiplier
   SparseRows grain_columns_, mesh_columns_; ///< the same by overlap grain, by mesh node
-  std::vector<std::array<std::uint32_t, 2>> node_dofs_;
-  std::vector<std::string> row_names_;
-  std::vector<double> grain_inverse_mass_; ///< of the overlap grains, as factorised
+  std::vector<double> grain_inverse_mass_;  ///< of the overlap grains, as factorised
   std::vector<std::array<double, 2>> node_inverse_mass_;
-  std::vector<std::int32_t> node_of_dof_; ///< index into node_dofs_, or -1
+  std::vector<std::int32_t> node_of_dof_; ///< index into node_dofs(), or -1
   std::vector<double> multiplier_;        ///< L of the last projection
   std::optional<ConstraintSolver> solver_;
 };

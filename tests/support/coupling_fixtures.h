@@ -150,6 +150,7 @@ struct Bridged
   std::unique_ptr<BridgingDomain> domain;
   std::vector<discrete::Wall> walls;
   unsigned int degree = 1; ///< of the cells
+  BridgingOptions options;
 
   /// One thread: these models are too small to share out.
   Bridged() { omp_set_num_threads(1); }
@@ -180,7 +181,7 @@ struct Bridged
         });
     mesh.emplace(*solid);
     domain = std::make_unique<BridgingDomain>(state.grains, state.joints, *solid, weight,
-                                              0.02 * material.density * cell);
+                                              0.02 * material.density * cell, options);
     set_masses(0.);
   }
 

@@ -35,8 +35,12 @@ struct RandomBlock
   discrete::TileResponse response;
   std::vector<std::int32_t> tile_joint; ///< of each joint of the model
 
-  RandomBlock(const std::uint64_t seed, const bool cubic, const double modulus_ratio = 1.)
+  RandomBlock(const std::uint64_t seed,
+              const bool cubic,
+              const double modulus_ratio = 1.,
+              const MultiplierSpace space = MultiplierSpace::mesh)
   {
+    model.options.multipliers = space;
     discrete::PackingParameters parameters;
     parameters.seed = seed;
     const discrete::PeriodicTile tile =
@@ -104,12 +108,14 @@ struct RandomBlock
 struct PatchError
 {
   double strain = 0., stress = 0., force = 0., mesh = 0.;
+  double beside = 0.; ///< of the joint forces within 4 d of the overlap
   void enlarge(const PatchError &e)
   {
     strain = std::max(strain, e.strain);
     stress = std::max(stress, e.stress);
     force = std::max(force, e.force);
     mesh = std::max(mesh, e.mesh);
+    beside = std::max(beside, e.beside);
   }
 };
 
@@ -140,7 +146,8 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
 
   const discrete::Joints &joints = model.state.joints;
   const discrete::Grains &g = model.state.grains;
-  double square = 0., reference = 0.;
+  double square = 0., reference = 0., square_beside = 0., reference_beside = 0.;
+  const Rectangle inner{4., core_size - 4., 4., core_size - 4.};
   Eigen::Matrix2d stress = Eigen::Matrix2d::Zero(), wanted = stress; // times area
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
@@ -163,12 +170,18 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
         exact += stiffness[r] * strain[e] * tile[e][r];
       square += (found - exact) * (found - exact);
       reference += exact * exact;
+      if (!inner.holds(g.reference(one)) || !inner.holds(g.reference(two)))
+      {
+        square_beside += (found - exact) * (found - exact);
+        reference_beside += exact * exact;
+      }
       const Eigen::Matrix2d dyad = joints.length[j] * (r == 0 ? n : t) * n.transpose();
       stress += found * dyad;
       wanted += exact * dyad;
     }
   }
   error.force = std::sqrt(square / reference);
+  error.beside = std::sqrt(square_beside / reference_beside);
   error.stress = (stress - wanted).norm() / wanted.norm();
   for (const auto &cell : model.solid->cell_states(u.mesh))
     if (cell.weight == 1.)
@@ -188,9 +201,10 @@ PatchError patch_error(const RandomBlock &block, const char *what)
   for (const Strain &strain : {Strain{{1., 0., 0.}}, Strain{{0., 0., 1.}}})
   {
     const PatchError e = error_of(block, strain);
-    std::printf("  %s, %s: core strain %.2e, stress %.2e, joint force %.2e, mesh %.2e\n",
+    std::printf("  %s, %s: core strain %.2e, stress %.2e, joint force %.2e, beside "
+                "the overlap %.2e, mesh %.2e\n",
                 what, strain[0] != 0. ? "axial" : "shear", e.strain, e.stress, e.force,
-                e.mesh);
+                e.beside, e.mesh);
     worst.enlarge(e);
   }
   return worst;
@@ -223,6 +237,36 @@ TEST(RandomPatch, CubicRampDoesNoHarm)
   EXPECT_LE(error.stress, 2.5e-2);
   EXPECT_LE(error.force, 3e-2);
   EXPECT_LE(error.mesh, 0.10);
+}
+
+// One multiplier a grain freezes the scatter of the grains in the overlap about the mean
+// field, which the joints of the core's rim feel: 3 to 6 % of error of the joint forces
+// beside the overlap were found when the formulation was chosen, against 1.4 to 2 %. The
+// core is 24 d wide here, three quarters of it far from its rim, so less remains.
+namespace
+{
+void expect_frozen_scatter(const std::uint64_t seed)
+{
+  const RandomBlock free(seed, false);
+  const RandomBlock frozen(seed, false, 1., MultiplierSpace::per_grain);
+  const PatchError one = patch_error(free, "multipliers of the mesh"),
+                   two = patch_error(frozen, "multipliers per grain");
+  EXPECT_GE(two.force / one.force, 1.5);
+  EXPECT_GE(two.beside / one.beside, 1.5);
+  EXPECT_GE(two.beside, 0.02);
+  EXPECT_LE(two.beside, 0.06);
+}
+} // namespace
+
+TEST(RandomPatch, MultipliersPerGrainFreezeTheScatter)
+{
+  expect_frozen_scatter(1);
+}
+
+TEST(RandomPatch, MultipliersPerGrainFreezeTheScatterOfTwoMoreLong)
+{
+  expect_frozen_scatter(2);
+  expect_frozen_scatter(3);
 }
 
 TEST(RandomPatch, FailsWithASofterMesh)
