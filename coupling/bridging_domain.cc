@@ -82,6 +82,13 @@ continuum::Vector weighted_mass(const continuum::ElasticSolid &solid)
   }
   return mass;
 }
+std::vector<bool> tied_flags(const GrainTies &ties, const std::size_t n_grains)
+{
+  std::vector<bool> is_tied(ties.empty() ? 0 : n_grains, false);
+  for (const GrainTie &tie : ties.ties())
+    is_tied[tie.grain] = true;
+  return is_tied;
+}
 } // namespace
 
 std::vector<double> joint_weights(const discrete::Grains &grains,
@@ -101,8 +108,14 @@ BridgingDomain::BridgingDomain(const discrete::Grains &grains,
                                const double smallest_mass,
                                const BridgingOptions &options)
     : weight_(std::move(weight))
+    , ties_(grains, solid, options.tied_grains)
     , mesh_mass_(weighted_mass(solid))
-    , rows_(constraint_rows(grains, solid, weight_, smallest_mass, options.multipliers))
+    , rows_(constraint_rows(grains,
+                            solid,
+                            weight_,
+                            smallest_mass,
+                            options.multipliers,
+                            tied_flags(ties_, grains.size())))
     , grain_columns_(transposed(rows_.grains, rows_.overlap_grains.size()))
     , mesh_columns_(transposed(rows_.nodes, rows_.node_dofs.size()))
     , node_of_dof_(solid.dof_handler().n_dofs(), -1)
@@ -142,6 +155,13 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
   }
   for (const auto dof : solid.locally_owned())
     mesh_mass_(dof) = std::max(mesh_mass_(dof), 0.5 * whole(dof));
+  for (const GrainTie &tie : ties_.ties())
+    for (const GrainTie::Node &node : tie.nodes)
+    {
+      const double m = grains.mass[tie.grain] * mu_[tie.grain] * node.mass_share;
+      mesh_mass_(node.dof_x) += m;
+      mesh_mass_(node.dof_y) += m;
+    }
 }
 
 bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
@@ -258,6 +278,7 @@ void BridgingDomain::project(discrete::Grains &grains, continuum::Vector &veloci
         v[rows_.node_dofs[c][0]] -= node_inverse_mass_[c][0] * impulse.x;
         v[rows_.node_dofs[c][1]] -= node_inverse_mass_[c][1] * impulse.y;
       });
+  ties_.follow(grains, velocity);
 }
 
 double BridgingDomain::mesh_impulse(const std::size_t dof) const

@@ -2,6 +2,7 @@
 
 #include "continuum/elastic_solid.h"
 #include "coupling/constraint_solver.h"
+#include "coupling/grain_ties.h"
 #include "coupling/multiplier_space.h"
 #include "coupling/overlap_weight.h"
 #include "discrete/grains.h"
@@ -16,6 +17,9 @@ namespace antiform::coupling
 struct BridgingOptions
 {
   MultiplierSpace multipliers = MultiplierSpace::mesh;
+  /// Grains that follow the mesh in all (unsupported_grains()) in place of taking part in
+  /// the constraint.
+  std::vector<std::int32_t> tied_grains;
 };
 
 /// Joins grains and mesh in an overlap (docs/theory/bridging.md). The multiplier J
@@ -42,8 +46,12 @@ public:
   /// joint weight keeps the stable step of the uncoupled grains.
   const std::vector<double> &grain_mass_weight() const { return mu_; }
   /// Lumped real mass of the mesh with the grains' surplus (mu_i - w_D) taken off, at
-  /// least half the weighted mass [kg].
+  /// least half the weighted mass, and with the weighted mass of tied grains [kg].
   const continuum::Vector &mesh_mass() const { return mesh_mass_; }
+
+  /// Grains that follow the mesh in all. With any, the loop needs TiedGrains and, once
+  /// the inertial masses are set, ties().hold().
+  const GrainTies &ties() const { return ties_; }
 
   /// Build and factorise S = C_D Mi_D C_D^T + C_C Mi_C C_C^T for the inertial masses.
   void factorise(const discrete::Grains &grains, const continuum::Vector &inverse_mass);
@@ -51,7 +59,8 @@ public:
   /// Whether the overlap's grains have the masses that S was factorised for.
   bool is_factorised_for(const discrete::Grains &grains) const;
 
-  /// Project half-step velocities onto the constraint: v -= Mi C^T L, S L = C v.
+  /// Project half-step velocities onto the constraint: v -= Mi C^T L, S L = C v;
+  /// tied grains get the velocities of the mesh.
   void project(discrete::Grains &grains, continuum::Vector &velocity);
   /// Impulses of the last project() on a mesh dof, (C_C^T L) [N s]; dofs without
   /// multipliers: 0. The reaction of a prescribed dof needs it.
@@ -99,6 +108,7 @@ private:
                         const ToNode &to_node) const;
 
   OverlapWeight weight_;
+  GrainTies ties_;
   std::vector<double> mu_;
   continuum::Vector mesh_mass_;
   ConstraintRows rows_;                     ///< by multiplier

@@ -174,11 +174,28 @@ void StaticSystem::add_mesh_force(const std::size_t dof, const double force)
   force_[mesh_begin() + dof] += force;
 }
 
+std::vector<std::pair<std::size_t, double>>
+StaticSystem::tie_row(const GrainTie &tie, const unsigned int component) const
+{
+  std::vector<std::pair<std::size_t, double>> row{{index(tie.grain, component), 1.}};
+  for (const GrainTie::Node &node : tie.nodes)
+    if (component < 2)
+      row.emplace_back(mesh_begin() + (component == 0 ? node.dof_x : node.dof_y),
+                       -node.value);
+    else
+    {
+      row.emplace_back(mesh_begin() + node.dof_x, 0.5 * node.by_y);
+      row.emplace_back(mesh_begin() + node.dof_y, -0.5 * node.by_x);
+    }
+  return row;
+}
+
 StaticSolution StaticSystem::solve() const
 {
   const std::size_t n_primal = force_.size();
   const std::size_t n_rows = bridging_ != nullptr ? bridging_->grain_rows().n_rows() : 0;
-  const std::size_t n = n_primal + 2 * n_rows;
+  const std::size_t n_ties = bridging_ != nullptr ? bridging_->ties().ties().size() : 0;
+  const std::size_t n = n_primal + 2 * n_rows + 3 * n_ties;
 
   Triplets all;
   for (std::size_t j = 0; j < joints_.size(); ++j)
@@ -249,6 +266,15 @@ StaticSolution StaticSystem::solve() const
       }
     }
   }
+
+  for (std::size_t t = 0; t < n_ties; ++t)
+    for (const unsigned int c : {0u, 1u, 2u})
+      for (const auto &[column, value] : tie_row(bridging_->ties().ties()[t], c))
+      {
+        const std::size_t row = n_primal + 2 * n_rows + 3 * t + c;
+        all.add(row, column, diagonal * value);
+        all.add(column, row, diagonal * value);
+      }
 
   // Fixed unknowns: identity rows, their columns to the right-hand side.
   Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));

@@ -51,6 +51,9 @@ private:
   {
     return 3 * grain + component;
   }
+  /// Entries of what ties a displacement (0, 1) or the rotation (2) of a grain.
+  std::vector<std::pair<std::size_t, double>> tie_row(const GrainTie &tie,
+                                                      unsigned int component) const;
   std::size_t mesh_begin() const { return 3 * grains_.size(); }
 
   const discrete::Grains &grains_;

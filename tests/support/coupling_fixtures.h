@@ -151,6 +151,7 @@ struct Bridged
   std::vector<discrete::Wall> walls;
   unsigned int degree = 1; ///< of the cells
   BridgingOptions options;
+  bool tie_unsupported = false; ///< grains that nothing holds
 
   /// One thread: these models are too small to share out.
   Bridged() { omp_set_num_threads(1); }
@@ -174,6 +175,8 @@ struct Bridged
   {
     state.joints.weight = joint_weights(state.grains, state.joints, weight);
     state.breaking = false;
+    if (tie_unsupported)
+      options.tied_grains = unsupported_grains(state.grains, state.joints, weight);
     solid = std::make_unique<continuum::ElasticSolid>(
         triangulation, std::vector<continuum::ElasticMaterial>{material}, degree,
         [w = weight](const dealii::Point<2> &x) {
@@ -192,6 +195,7 @@ struct Bridged
         discrete::stiffness_sums(state.grains, state.joints, false);
     discrete::scale_density(state.grains, sums, domain->grain_mass_weight(), dt0);
     mesh->scale_density(domain->mesh_mass(), {}, dt0);
+    domain->ties().hold(state.grains);
   }
   /// After the last change of masses or supports.
   void factorise() { domain->factorise(state.grains, mesh->inverse_mass); }
@@ -320,6 +324,9 @@ public:
     MeshState &mesh = *model.mesh;
     auto &mesh_motion = add(std::make_unique<MeshMotion>(mesh, model.walls),
                             {Stage::forces, Stage::kick, Stage::drift}, 5, "mesh");
+    if (!model.domain->ties().empty())
+      add(std::make_unique<TiedGrains>(model.domain->ties(), grains, mesh), {Stage::damp},
+          90, "tied grains");
     add(std::make_unique<Bonds>(grains), {Stage::forces}, 20, "bonds");
     auto &grain_motion = add(std::make_unique<GrainMotion>(grains),
                              {Stage::kick, Stage::drift}, 50, "grains");
