@@ -6,6 +6,7 @@
 #include "coupling/grain_components.h"
 #include "coupling/joining_components.h"
 #include "coupling/mesh_components.h"
+#include "coupling/overlap_damping.h"
 #include "coupling/static_system.h"
 #include "discrete/random.h"
 
@@ -313,6 +314,7 @@ public:
     bool combined = false;   ///< form of the damping
     bool constrained = true; ///< damping and ratio from the constrained forces
     bool bridged = true;     ///< project velocities on the constraint
+    double overlap_damping = 0.; ///< rate [1/s]
     std::function<double(double)> wall_speed; ///< with walls
   };
 
@@ -324,6 +326,10 @@ public:
     MeshState &mesh = *model.mesh;
     auto &mesh_motion = add(std::make_unique<MeshMotion>(mesh, model.walls),
                             {Stage::forces, Stage::kick, Stage::drift}, 5, "mesh");
+    if (options.overlap_damping > 0.)
+      add(std::make_unique<OverlapDamping>(*model.domain, *model.solid, grains, mesh,
+                                           options.overlap_damping),
+          {Stage::damp, Stage::drift}, 94, "overlap damping");
     if (!model.domain->ties().empty())
       add(std::make_unique<TiedGrains>(model.domain->ties(), grains, mesh), {Stage::damp},
           90, "tied grains");

@@ -1,6 +1,6 @@
 // A wave packet runs from the grains through the overlap into the mesh: amplitude that
 // comes back. n is the number of cells per wavelength.
-#include "support/coupling_fixtures.h"
+#include "support/chain_fixture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,31 +8,6 @@ namespace antiform::coupling::test::reflection_tests
 {
 namespace
 {
-struct Wave
-{
-  double n = 8.;      ///< cells a wavelength
-  double h = 2.;      ///< cell [d]
-  double cells = 4.;  ///< of the overlap
-  bool cubic = false; ///< ramp
-  double wavelength() const { return n * h; }
-  double w() const { return cells * h; }
-};
-
-/// Gaussian packet of standard deviation 2.5 periods, cut at 4 of them.
-struct Packet
-{
-  double frequency; ///< angular [rad/s]
-  double deviation() const { return 2.5 * 2. * M_PI / frequency; }
-  double duration() const { return 8. * deviation(); }
-  double velocity(const double t) const
-  {
-    const double s = (t - 4. * deviation()) / deviation();
-    return t < duration()
-               ? 1e-9 * std::exp(-0.5 * s * s) * std::sin(frequency * s * deviation())
-               : 0.;
-  }
-};
-
 /// Drive the grains left of @p end, let the packet pass, and compare the energy that is
 /// back among the grains with that of the model.
 double reflected_amplitude(Bridged &model,
@@ -42,23 +17,11 @@ double reflected_amplitude(Bridged &model,
                            const double distance)
 {
   discrete::Grains &g = model.state.grains;
-  std::vector<std::size_t> driven;
-  for (std::size_t i = 0; i < g.size(); ++i)
-    if (g.reference_x[i] < end)
-    {
-      driven.push_back(i);
-      model.hold_grain(i);
-    }
+  const std::vector<std::size_t> driven = hold_end(model, end);
   model.factorise();
   const double dt = 0.8 * model.stable_step();
   Loop run(model, dt, {});
-  run.add(std::make_unique<Every>(
-              [&](const Clock &clock)
-              {
-                for (const std::size_t i : driven)
-                  g.velocity_x[i] = packet.velocity(clock.time + 0.5 * clock.dt);
-              }),
-          {Stage::kick}, 51, "drive");
+  drive(run, model, driven, packet);
   // A strip without shear of its height: side grains move along x only.
   std::vector<GrainBase::Support> supports;
   for (std::size_t i = 0; i < g.size(); ++i)
@@ -92,33 +55,12 @@ double reflected_amplitude(Bridged &model,
   return ratio;
 }
 
-/// Two equal chains without contact (one would leave the upper and the lower multipliers
-/// of a cell alike) and a strip of one row of cells, of equal rigidity and density.
 double chain_reflection(const Wave &wave)
 {
-  constexpr double height = 4., mass = 0.25 * M_PI;
-  const double k = 2. * M_PI / wave.wavelength();
-  const double c = std::sqrt(1. / mass); // of long waves; K_n = 1
-  const Packet packet{2. * std::sqrt(1. / mass) * std::sin(0.5 * k)};
-  const double length = c * packet.duration();
-
   Bridged model;
-  model.weight.distance_to_core = [](const Vec2 &x) { return std::max(0., x.x); };
-  model.weight.width = wave.w();
-  model.weight.cubic = wave.cubic;
-  const int n_cells = static_cast<int>(std::ceil(length / wave.h + wave.cells));
-  make_cells(model.triangulation, lines(0., n_cells * wave.h, n_cells),
-             {-0.5 * height, 0.5 * height}, [](const Vec2 &) { return true; });
-  for (const double y : {-1., 1.})
-    for (double x = 0.37 - std::floor(length); x <= wave.w(); x += 1.)
-      model.state.grains.add({x, y}, 0.5, 1., 0);
-  continuum::ElasticMaterial material;
-  const double modulus = 2. / height; // two chains of rigidity K_n d = 1; nu = 0
-  material.stiffness = {{{modulus, 0., 0.}, {0., modulus, 0.}, {0., 0., 0.5 * modulus}}};
-  material.density = 2. * mass / height;
-  model.join(elastic_law(), 1e-6, material, wave.h * height);
-  return reflected_amplitude(model, packet, 0.5 - std::floor(length), c,
-                             length + 2. * wave.w());
+  const Chain chain = make_chain(model, wave);
+  return reflected_amplitude(model, chain.packet, chain.begin + 0.5, chain.speed,
+                             chain.length + 2. * wave.w());
 }
 
 /// Strip of the hexagonal lattice between two of its mirror lines: side rows count half,
