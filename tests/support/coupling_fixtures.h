@@ -8,6 +8,7 @@
 #include "coupling/mesh_components.h"
 #include "coupling/overlap_damping.h"
 #include "coupling/static_system.h"
+#include "coupling/subcycled_mesh.h"
 #include "discrete/random.h"
 
 #include <deal.II/distributed/tria.h>
@@ -314,6 +315,7 @@ public:
     bool combined = false;   ///< form of the damping
     bool constrained = true; ///< damping and ratio from the constrained forces
     bool bridged = true;     ///< project velocities on the constraint
+    std::int64_t interval = 1;   ///< of sub-cycling [steps]
     double overlap_damping = 0.; ///< rate [1/s]
     std::function<double(double)> wall_speed; ///< with walls
   };
@@ -324,8 +326,15 @@ public:
   {
     GrainState &grains = model.state;
     MeshState &mesh = *model.mesh;
-    auto &mesh_motion = add(std::make_unique<MeshMotion>(mesh, model.walls),
-                            {Stage::forces, Stage::kick, Stage::drift}, 5, "mesh");
+    auto &mesh_motion = add(
+        options.interval == 1
+            ? std::make_unique<MeshMotion>(mesh, model.walls)
+            : std::make_unique<SubcycledMesh>(mesh, model.walls, options.interval, dt,
+                                              model.mesh_step()),
+        options.interval == 1
+            ? std::vector<Stage>{Stage::forces, Stage::kick, Stage::drift}
+            : std::vector<Stage>{Stage::forces, Stage::damp, Stage::kick, Stage::drift},
+        5, "mesh");
     if (options.overlap_damping > 0.)
       add(std::make_unique<OverlapDamping>(*model.domain, *model.solid, grains, mesh,
                                            options.overlap_damping),

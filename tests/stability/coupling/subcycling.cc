@@ -1,0 +1,165 @@
+// Mesh forces every n steps of the grains: result, energy and what is refused.
+#include "support/chain_fixture.h"
+
+#include "continuum/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace antiform::coupling::test::subcycling_tests
+{
+namespace
+{
+// Cells of 16 d: the mesh's step is then far above the grains', and the rule leaves room.
+const Wave wave{10., 16., 4., true};
+
+struct Result
+{
+  continuum::Vector mesh; ///< displacement at the end
+  double input = 0.;      ///< energy of the packet [J]
+  double growth = -1e9;   ///< of stored and spent energy over it, largest
+  double gap = 0.;        ///< displacement gap over the largest displacement
+  double ratio = 0.;      ///< stable step of the mesh over the step
+  std::int64_t interval = 1;
+};
+
+/// Every @p interval -th step; 0: as seldom as the rule allows.
+Result run_packet(std::int64_t interval, const double rate_factor)
+{
+  Bridged model;
+  const Chain chain = make_chain(model, wave, 16.);
+  const std::vector<std::size_t> driven = hold_end(model, chain.begin + 0.5);
+  model.factorise();
+  const double dt = 0.8 * model.grain_step();
+  Result result;
+  result.ratio = model.mesh_step() / dt;
+  if (interval == 0)
+    interval = static_cast<std::int64_t>(0.3 * result.ratio);
+  result.interval = interval;
+  Loop::Options options;
+  options.interval = interval;
+  options.overlap_damping = rate_factor * chain.speed;
+  Loop run(model, dt, options);
+  drive(run, model, driven, chain.packet);
+  const double begin = chain.packet.duration();
+  run.probe(60, // a multiple of every interval here
+            [&](const Clock &clock)
+            {
+              if (clock.time < begin)
+                return;
+              const Energies e = run.simulation.energies();
+              if (result.input == 0.)
+                result.input = e.stored_and_spent();
+              result.growth =
+                  std::max(result.growth, e.stored_and_spent() / result.input - 1.);
+            });
+  // The packet's centre has just left the overlap.
+  const double end = begin + (0.5 * chain.length + wave.w()) / chain.speed;
+  run.advance(60 * static_cast<std::int64_t>(end / dt / 60.) + 1);
+  result.mesh = model.mesh->displacement;
+  result.gap =
+      model.domain->displacement_gap(model.state.grains, model.mesh->displacement) /
+      largest_displacement(model);
+  return result;
+}
+
+double difference(const Result &one, const Result &two)
+{
+  continuum::Vector d = one.mesh;
+  d -= two.mesh;
+  return d.l2_norm() / two.mesh.l2_norm();
+}
+
+/// Adds energy that nothing has put in.
+class Source : public Component
+{
+public:
+  explicit Source(const double a_step)
+      : a_step_(a_step)
+  {
+  }
+  void run(Stage, const Clock &) override { ++n_; }
+  void add_energies(Energies &e) const override { e.kinetic += 1. + a_step_ * n_; }
+
+private:
+  double a_step_;
+  int n_ = 0;
+};
+} // namespace
+
+TEST(Subcycling, GivesTheResultOfEveryStep)
+{
+  const Result every = run_packet(1, 0.05), seldom = run_packet(0, 0.05);
+  const double error = difference(seldom, every);
+  std::printf("  every %lld steps, mesh step / step %.2f: difference %.2e, growth %.1e, "
+              "gap %.1e\n",
+              static_cast<long long>(seldom.interval), seldom.ratio, error, seldom.growth,
+              seldom.gap);
+  // The error is that of leapfrog, (omega n dt)^2 / 24 a radian: n^2 - 1 against n = 1.
+  const Result twice = run_packet(2, 0.05);
+  const double n = static_cast<double>(seldom.interval);
+  EXPECT_NEAR(error / difference(twice, every) / ((n * n - 1.) / 3.), 1., 0.3);
+  EXPECT_GE(n, 3.);
+  EXPECT_LE(error, 0.01);
+  EXPECT_LE(seldom.growth, 1e-3);
+  EXPECT_LE(seldom.gap, 1e-10); // the constraint is obeyed in every step
+}
+
+TEST(Subcycling, RefusesBeyondTheRuleAndNamesTheRemedy)
+{
+  Bridged model;
+  make_chain(model, wave, 16.);
+  model.factorise();
+  const double dt = 0.8 * model.grain_step();
+  const auto possible = static_cast<std::int64_t>(0.3 * model.mesh_step() / dt);
+  EXPECT_NO_THROW(
+      SubcycledMesh(*model.mesh, model.walls, possible, dt, model.mesh_step()));
+  EXPECT_NO_THROW(SubcycledMesh(*model.mesh, model.walls, 1, dt, 0.9 * dt));
+  try
+  {
+    SubcycledMesh(*model.mesh, model.walls, possible + 1, dt, model.mesh_step());
+    FAIL() << "accepted";
+  }
+  catch (const NumericalError &error)
+  {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("Take an interval of " + std::to_string(possible) + " or less"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("Matrix / Cell size ratio"), std::string::npos) << text;
+    EXPECT_NEAR(error.value, static_cast<double>(possible + 1) * dt / model.mesh_step(),
+                1e-12);
+    EXPECT_EQ(error.limit, 0.3);
+  }
+  EXPECT_THROW(SubcycledMesh(*model.mesh, model.walls, 0, dt, model.mesh_step()),
+               std::invalid_argument);
+}
+
+TEST(EnergyWatch, RefusesGrowthAndLetsTheRestPass)
+{
+  for (const double a_step : {0., -1e-3, 1e-3})
+  {
+    Simulation simulation(1.);
+    simulation.add(std::make_unique<Source>(a_step), {Stage::forces}, 0, "source", "");
+    auto &watch = simulation.add(std::make_unique<EnergyWatch>(simulation, 0.05),
+                                 {Stage::sample}, 0, "watch", "");
+    simulation.set_sampler([](const Clock &) { return true; });
+    int steps = 0;
+    try
+    {
+      for (; steps < 100; ++steps)
+        simulation.step();
+    }
+    catch (const NumericalError &error)
+    {
+      EXPECT_GT(error.value, 0.05);
+      EXPECT_EQ(error.step, steps);
+    }
+    // Growth of 0.05 relative to the largest, 1 + 1e-3 n, is passed after 54 steps.
+    EXPECT_EQ(steps, a_step > 0. ? 53 : 100);
+    EXPECT_EQ(watch.growth() > 0.05, a_step > 0.);
+  }
+}
+} // namespace antiform::coupling::test::subcycling_tests
