@@ -80,8 +80,8 @@ void demand_regular(const Eigen::SparseMatrix<double> &matrix,
       "bridging domain",
       "multiplier space too rich at " + name_of_row(row) +
           ": the constraint matrix is singular there. Use larger cells "
-          "(Matrix / Cell size ratio) or a wider overlap; smallest pivot "
-          "over the mean",
+          "(Matrix / Cell size ratio), a wider overlap or coarsened multipliers; "
+          "smallest pivot over the mean",
       least / mean, 1e-10);
 }
 } // namespace

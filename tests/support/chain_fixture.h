@@ -30,7 +30,8 @@ struct Packet
 };
 
 /// Two equal chains without contact (one would leave the upper and the lower multipliers
-/// of a cell alike) and a strip of one row of cells, of equal rigidity and density.
+/// of a cell alike) and a strip of one row of cells, of equal density and, times a ratio,
+/// equal rigidity.
 struct Chain
 {
   Packet packet;
@@ -39,7 +40,10 @@ struct Chain
   double speed;  ///< of long waves [d/s]
   std::int32_t n_cells;
 };
-inline Chain make_chain(Bridged &model, const Wave &wave, const double height = 4.)
+inline Chain make_chain(Bridged &model,
+                        const Wave &wave,
+                        const double height = 4.,
+                        const double mesh_modulus_ratio = 1.)
 {
   constexpr double mass = 0.25 * M_PI;
   const double k = 2. * M_PI / wave.wavelength();
@@ -49,14 +53,16 @@ inline Chain make_chain(Bridged &model, const Wave &wave, const double height = 
   model.weight.distance_to_core = [](const Vec2 &x) { return std::max(0., x.x); };
   model.weight.width = wave.w();
   model.weight.cubic = wave.cubic;
-  const int n_cells = static_cast<int>(std::ceil(length / wave.h + wave.cells));
+  const int n_cells = static_cast<int>(std::ceil(
+      length * std::sqrt(std::max(1., mesh_modulus_ratio)) / wave.h + wave.cells));
   make_cells(model.triangulation, lines(0., n_cells * wave.h, n_cells),
              {-0.5 * height, 0.5 * height}, [](const Vec2 &) { return true; });
   for (const double y : {-0.25 * height, 0.25 * height})
     for (double x = 0.37 - std::floor(length); x <= wave.w(); x += 1.)
       model.state.grains.add({x, y}, 0.5, 1., 0);
   continuum::ElasticMaterial material;
-  const double modulus = 2. / height; // two chains of rigidity K_n d = 1; nu = 0
+  const double modulus =
+      mesh_modulus_ratio * 2. / height; // two chains of rigidity K_n d = 1; nu = 0
   material.stiffness = {{{modulus, 0., 0.}, {0., modulus, 0.}, {0., 0., 0.5 * modulus}}};
   material.density = 2. * mass / height;
   model.join(elastic_law(), 1e-6, material, wave.h * height);

@@ -55,10 +55,10 @@ double reflected_amplitude(Bridged &model,
   return ratio;
 }
 
-double chain_reflection(const Wave &wave)
+double chain_reflection(const Wave &wave, const double mesh_modulus_ratio = 1.)
 {
   Bridged model;
-  const Chain chain = make_chain(model, wave);
+  const Chain chain = make_chain(model, wave, 4., mesh_modulus_ratio);
   return reflected_amplitude(model, chain.packet, chain.begin + 0.5, chain.speed,
                              chain.length + 2. * wave.w());
 }
@@ -170,6 +170,19 @@ TEST(ChainReflection, OfUnresolvedWavesIsLarge)
   chain({4., 2., 4., true});
   EXPECT_GT(chain({3., 2., 4., false}), 0.3);
   EXPECT_GT(chain({2.5, 2., 4., false}), 0.9);
+}
+
+TEST(ChainReflection, OfAnImpedanceStepIsThatOfASharpJoint)
+{
+  // Long waves do not see the overlap's width of 4 d: r = (Z2 - Z1) / (Z2 + Z1) with
+  // Z^2 in proportion to the modulus. The overlap is a gradual step, which reflects less
+  // by (k w)^2 / 6 at most, 0.4 % at a wavelength of 160 d.
+  for (const double ratio : {4., 0.25})
+  {
+    const double r = chain_reflection({80., 2., 2., false}, ratio);
+    std::printf("  modulus of the mesh times %g: reflected amplitude %.5f\n", ratio, r);
+    EXPECT_NEAR(r, 1. / 3., 0.01 / 3.);
+  }
 }
 
 TEST(LatticeReflection, IsBelowTwoPercentWithFourCells)
