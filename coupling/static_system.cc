@@ -163,6 +163,23 @@ void StaticSystem::add_pair_spring(const std::size_t one,
 {
   pair_springs_.push_back({one, two, normal, stiffness});
 }
+StaticSystem::Terms StaticSystem::terms(const LinearForm &form) const
+{
+  Terms all;
+  for (const LinearForm::GrainTerm &term : form.grains)
+    all.emplace_back(index(term.grain, term.component), term.value);
+  for (const LinearForm::MeshTerm &term : form.mesh)
+    all.emplace_back(mesh_begin() + term.dof, term.value);
+  return all;
+}
+void StaticSystem::add_spring(const LinearForm &elongation, const double stiffness)
+{
+  form_springs_.emplace_back(terms(elongation), stiffness);
+}
+void StaticSystem::add_constraint(const LinearForm &form)
+{
+  constraints_.push_back(terms(form));
+}
 void StaticSystem::add_grain_force(const std::size_t grain,
                                    const unsigned int component,
                                    const double force)
@@ -195,7 +212,8 @@ StaticSolution StaticSystem::solve() const
   const std::size_t n_primal = force_.size();
   const std::size_t n_rows = bridging_ != nullptr ? bridging_->grain_rows().n_rows() : 0;
   const std::size_t n_ties = bridging_ != nullptr ? bridging_->ties().ties().size() : 0;
-  const std::size_t n = n_primal + 2 * n_rows + 3 * n_ties;
+  const std::size_t forms_begin = n_primal + 2 * n_rows + 3 * n_ties;
+  const std::size_t n = forms_begin + constraints_.size();
 
   Triplets all;
   for (std::size_t j = 0; j < joints_.size(); ++j)
@@ -224,6 +242,10 @@ StaticSolution StaticSystem::solve() const
                 index(b < 2 ? pair.one : pair.two, b % 2),
                 pair.stiffness * row[a] * row[b]);
   }
+  for (const auto &[row, stiffness] : form_springs_)
+    for (const auto &[a, value_a] : row)
+      for (const auto &[b, value_b] : row)
+        all.add(a, b, stiffness * value_a * value_b);
   if (solid_ != nullptr)
     for (auto row = 0u; row < solid_->dof_handler().n_dofs(); ++row)
       for (auto it = solid_->stiffness().begin(row); it != solid_->stiffness().end(row);
@@ -266,6 +288,12 @@ StaticSolution StaticSystem::solve() const
       }
     }
   }
+  for (std::size_t r = 0; r < constraints_.size(); ++r)
+    for (const auto &[column, value] : constraints_[r])
+    {
+      all.add(forms_begin + r, column, diagonal * value);
+      all.add(column, forms_begin + r, diagonal * value);
+    }
 
   for (std::size_t t = 0; t < n_ties; ++t)
     for (const unsigned int c : {0u, 1u, 2u})

@@ -2,6 +2,7 @@
 
 #include "continuum/elastic_solid.h"
 #include "coupling/bridging_domain.h"
+#include "coupling/linear_form.h"
 #include "discrete/grains.h"
 #include "discrete/joints.h"
 
@@ -39,6 +40,10 @@ public:
   /// [N/m].
   void
   add_pair_spring(std::size_t one, std::size_t two, const Vec2 &normal, double stiffness);
+  /// Spring whose elongation is a linear form of grains and mesh [N/m].
+  void add_spring(const LinearForm &elongation, double stiffness);
+  /// A linear form of grains and mesh that stays 0: a multiplier more.
+  void add_constraint(const LinearForm &form);
   /// External force on a grain [N] (component 2: torque [N m]) or on a mesh dof [N].
   void add_grain_force(std::size_t grain, unsigned int component, double force);
   void add_mesh_force(std::size_t dof, double force);
@@ -69,6 +74,11 @@ private:
     double stiffness;
   };
   std::vector<PairSpring> pair_springs_;
+  /// Linear forms by unknown; a spring's stiffness.
+  using Terms = std::vector<std::pair<std::size_t, double>>;
+  Terms terms(const LinearForm &form) const;
+  std::vector<std::pair<Terms, double>> form_springs_;
+  std::vector<Terms> constraints_;
 };
 
 /// The linearised kinematics of joint @p j at rest: rows gap, shear, rotation over the

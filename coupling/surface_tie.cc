@@ -1,0 +1,297 @@
+#include "coupling/surface_tie.h"
+
+#include "continuum/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace antiform::coupling
+{
+namespace
+{
+/// A vertex has a multiplier when grains stand for more than this share of what its
+/// function covers of the edge: half a cell at the end of an edge, so that only vertices
+/// beyond the layer's ends are left out.
+constexpr double smallest_share = 0.1;
+
+/// What the grains demand of a vertex, in one direction.
+struct Row
+{
+  double length = 0.; ///< sum_i l_i N_J [m]
+  std::map<std::pair<std::int32_t, unsigned int>, double> grains;
+  std::map<std::uint32_t, double> mesh;
+};
+
+struct Vertex
+{
+  double face_length = 0.; ///< of the faces that meet there [m]
+  Vec2 place;
+  std::array<Row, 2> rows;
+};
+} // namespace
+
+SurfaceTie::SurfaceTie(const discrete::Grains &grains,
+                       std::vector<SurfaceInterface> interfaces,
+                       const Kind kind)
+    : kind_(kind)
+    , interfaces_(std::move(interfaces))
+{
+  for (const SurfaceInterface &interface : interfaces_)
+  {
+    places_.emplace_back();
+    for (const SurfacePoint &point : interface.points())
+      places_.back().push_back(point.place);
+  }
+  discrete::Grains reference = grains;
+  for (auto *field : {&reference.displacement_x, &reference.displacement_y})
+    std::fill(field->begin(), field->end(), 0.);
+  build_rows(reference, nullptr);
+}
+
+void SurfaceTie::follow(const discrete::Grains &grains,
+                        const continuum::Vector &displacement)
+{
+  if (kind_ == Kind::sliding)
+    for (std::size_t n = 0; n < interfaces_.size(); ++n)
+      for (std::size_t k = 0; k < places_[n].size(); ++k)
+        places_[n][k] = interfaces_[n]
+                            .edge()
+                            .nearest(grains.position(interfaces_[n].points()[k].grain),
+                                     displacement.begin(), places_[n][k])
+                            .place;
+  build_rows(grains, displacement.begin());
+  solver_.reset();
+}
+
+void SurfaceTie::build_rows(const discrete::Grains &grains, const double *displacement)
+{
+  rows_.clear();
+  row_names_.clear();
+  for (std::size_t n = 0; n < interfaces_.size(); ++n)
+    build_rows(interfaces_[n], places_[n], grains, displacement);
+
+  tied_grains_.clear();
+  tied_dofs_.clear();
+  for (const LinearForm &row : rows_)
+  {
+    for (const LinearForm::GrainTerm &term : row.grains)
+      tied_grains_.push_back(term.grain);
+    for (const LinearForm::MeshTerm &term : row.mesh)
+      tied_dofs_.push_back(term.dof);
+  }
+  const auto make_unique = [](auto &list)
+  {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  make_unique(tied_grains_);
+  make_unique(tied_dofs_);
+  const auto index = [](const auto &list, const auto value)
+  { return std::lower_bound(list.begin(), list.end(), value) - list.begin(); };
+  const auto n_grain_unknowns = static_cast<Eigen::Index>(3 * tied_grains_.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+  {
+    for (const LinearForm::GrainTerm &term : rows_[r].grains)
+      entries.emplace_back(
+          static_cast<int>(r),
+          static_cast<int>(3 * index(tied_grains_, term.grain) + term.component),
+          term.value);
+    for (const LinearForm::MeshTerm &term : rows_[r].mesh)
+      entries.emplace_back(
+          static_cast<int>(r),
+          static_cast<int>(n_grain_unknowns + index(tied_dofs_, term.dof)), term.value);
+  }
+  matrix_.resize(static_cast<Eigen::Index>(rows_.size()),
+                 n_grain_unknowns + static_cast<Eigen::Index>(tied_dofs_.size()));
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  impulse_ = Eigen::VectorXd::Zero(matrix_.cols());
+}
+
+void SurfaceTie::build_rows(const SurfaceInterface &interface,
+                            const std::vector<EdgeCurve::Place> &places,
+                            const discrete::Grains &grains,
+                            const double *const displacement)
+{
+  const EdgeCurve &edge = interface.edge();
+  std::map<std::uint32_t, Vertex> vertices; // by x dof: a fixed order
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(edge.n_faces()); ++f)
+    for (const unsigned int end : {0u, 1u})
+    {
+      Vertex &vertex = vertices[edge.dofs(f)[end][0]];
+      vertex.face_length += edge.distance_along({f, 1.}) - edge.distance_along({f, 0.});
+      vertex.place = edge.point({f, static_cast<double>(end)}, nullptr);
+    }
+
+  const unsigned int n_directions = kind_ == Kind::cemented ? 2 : 1;
+  for (std::size_t k = 0; k < places.size(); ++k)
+  {
+    const std::int32_t i = interface.points()[k].grain;
+    const EdgeCurve::Shape shape = edge.shape(places[k]);
+    const Vec2 arm = edge.point(places[k], displacement) - grains.position(i);
+    const Vec2 along = edge.tangent(places[k], displacement);
+    const std::array<Vec2, 2> cemented{Vec2{1., 0.}, Vec2{0., 1.}};
+    for (const unsigned int end : {0u, 1u})
+    {
+      const double hat = end == 0 ? 1. - places[k].s : places[k].s;
+      const double weight = interface.points()[k].length * hat;
+      Vertex &vertex = vertices[shape.dofs[end][0]];
+      for (unsigned int c = 0; c < n_directions; ++c)
+      {
+        const Vec2 direction = kind_ == Kind::cemented
+                                   ? cemented[c]
+                                   : (-1. / norm(along)) * perpendicular(along);
+        Row &row = vertex.rows[c];
+        row.length += weight;
+        row.grains[{i, 0}] += weight * direction.x;
+        row.grains[{i, 1}] += weight * direction.y;
+        row.grains[{i, 2}] += weight * cross(arm, direction);
+        for (unsigned int m = 0; m < shape.n; ++m)
+        {
+          row.mesh[shape.dofs[m][0]] -= weight * shape.value[m] * direction.x;
+          row.mesh[shape.dofs[m][1]] -= weight * shape.value[m] * direction.y;
+        }
+      }
+    }
+  }
+
+  for (const auto &[dof, vertex] : vertices)
+    for (unsigned int c = 0; c < n_directions; ++c)
+    {
+      const Row &row = vertex.rows[c];
+      if (row.length <= smallest_share * 0.5 * vertex.face_length)
+        continue;
+      LinearForm form;
+      const double scale = 1. / row.length;
+      for (const auto &[unknown, value] : row.grains)
+        if (value != 0.)
+          form.grains.push_back({unknown.first, unknown.second, scale * value});
+      for (const auto &[mesh_dof, value] : row.mesh)
+        if (value != 0.)
+          form.mesh.push_back({mesh_dof, scale * value});
+      rows_.push_back(std::move(form));
+      row_names_.push_back("vertex (" + std::to_string(vertex.place.x) + " m, " +
+                           std::to_string(vertex.place.y) + " m) of the edge");
+    }
+}
+
+void SurfaceTie::add_to(StaticSystem &system) const
+{
+  for (const LinearForm &row : rows_)
+    system.add_constraint(row);
+}
+
+Eigen::VectorXd SurfaceTie::gather(const std::vector<double> &x,
+                                   const std::vector<double> &y,
+                                   const std::vector<double> &rotation,
+                                   const double *const mesh) const
+{
+  Eigen::VectorXd field(matrix_.cols());
+  Eigen::Index u = 0;
+  for (const std::int32_t i : tied_grains_)
+    for (const auto *values : {&x, &y, &rotation})
+      field[u++] = (*values)[i];
+  for (const std::uint32_t dof : tied_dofs_)
+    field[u++] = mesh[dof];
+  return field;
+}
+
+void SurfaceTie::factorise(const discrete::Grains &grains,
+                           const continuum::Vector &inverse_mass)
+{
+  inverse_mass_ = gather(grains.inverse_mass, grains.inverse_mass, grains.inverse_inertia,
+                         inverse_mass.begin());
+  const Matrix product = matrix_ * inverse_mass_.asDiagonal() *
+                         Eigen::SparseMatrix<double>(matrix_.transpose());
+  try
+  {
+    solver_.emplace(Eigen::SparseMatrix<double>(product),
+                    [this](const Eigen::Index row) { return row_names_[row]; });
+  }
+  catch (const NumericalError &error)
+  {
+    throw NumericalError("surface interface",
+                         "the grains that face the mesh's edge do not tell its vertices "
+                         "apart: take larger cells (" +
+                             std::string(error.what()) + ")",
+                         error.value, error.limit);
+  }
+}
+
+bool SurfaceTie::is_factorised_for(const discrete::Grains &grains) const
+{
+  if (!solver_)
+    return false;
+  Eigen::Index u = 0;
+  for (const std::int32_t i : tied_grains_)
+  {
+    if (inverse_mass_[u] != grains.inverse_mass[i] ||
+        inverse_mass_[u + 2] != grains.inverse_inertia[i])
+      return false;
+    u += 3;
+  }
+  return true;
+}
+
+std::vector<double> SurfaceTie::multipliers(const Eigen::VectorXd &field) const
+{
+  const Eigen::VectorXd right = matrix_ * field;
+  std::vector<double> L(right.data(), right.data() + right.size());
+  solver_->solve(L);
+  return L;
+}
+
+void SurfaceTie::project(discrete::Grains &grains, continuum::Vector &velocity)
+{
+  const std::vector<double> L = multipliers(
+      gather(grains.velocity_x, grains.velocity_y, grains.spin, velocity.begin()));
+  impulse_ =
+      matrix_.transpose() * Eigen::Map<const Eigen::VectorXd>(L.data(), matrix_.rows());
+  Eigen::Index u = 0;
+  for (const std::int32_t i : tied_grains_)
+    for (auto *values : {&grains.velocity_x, &grains.velocity_y, &grains.spin})
+    {
+      (*values)[i] -= inverse_mass_[u] * impulse_[u];
+      ++u;
+    }
+  for (const std::uint32_t dof : tied_dofs_)
+  {
+    velocity.begin()[dof] -= inverse_mass_[u] * impulse_[u];
+    ++u;
+  }
+}
+
+void SurfaceTie::for_mesh_impulses(
+    const std::function<void(std::uint32_t, double)> &action) const
+{
+  auto u = static_cast<Eigen::Index>(3 * tied_grains_.size());
+  for (const std::uint32_t dof : tied_dofs_)
+    action(dof, impulse_[u++]);
+}
+
+void SurfaceTie::constrain_forces(discrete::Grains &grains,
+                                  continuum::Vector &mesh_force) const
+{
+  const Eigen::VectorXd force =
+      gather(grains.force_x, grains.force_y, grains.torque, mesh_force.begin());
+  const std::vector<double> L = multipliers(inverse_mass_.cwiseProduct(force));
+  const Eigen::VectorXd of_constraint =
+      matrix_.transpose() * Eigen::Map<const Eigen::VectorXd>(L.data(), matrix_.rows());
+  Eigen::Index u = 0;
+  for (const std::int32_t i : tied_grains_)
+    for (auto *values : {&grains.force_x, &grains.force_y, &grains.torque})
+      (*values)[i] -= of_constraint[u++];
+  for (const std::uint32_t dof : tied_dofs_)
+    mesh_force.begin()[dof] -= of_constraint[u++];
+}
+
+double SurfaceTie::displacement_gap(const discrete::Grains &grains,
+                                    const continuum::Vector &displacement) const
+{
+  const Eigen::VectorXd gap =
+      matrix_ * gather(grains.displacement_x, grains.displacement_y, grains.rotation,
+                       displacement.begin());
+  return gap.cwiseAbs().maxCoeff();
+}
+} // namespace antiform::coupling
