@@ -112,6 +112,14 @@ void EdgeCurve::chain_up(const types::boundary_id id)
   cells_ = std::move(cells);
 }
 
+EdgeCurve::Place EdgeCurve::place_at(const double distance) const
+{
+  const auto after = std::upper_bound(begin_.begin() + 1, begin_.end() - 1, distance);
+  const auto face = static_cast<std::int32_t>(after - begin_.begin() - 1);
+  return {face, std::clamp((distance - begin_[face]) / (begin_[face + 1] - begin_[face]),
+                           0., 1.)};
+}
+
 EdgeCurve::Shape EdgeCurve::shape(const Place &place) const
 {
   const LineShape line = line_shape(n_nodes_, place.s);

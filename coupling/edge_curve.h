@@ -52,6 +52,8 @@ public:
   {
     return begin_[place.face] + place.s * (begin_[place.face + 1] - begin_[place.face]);
   }
+  /// The place at such a distance from the start; beyond the ends, these.
+  Place place_at(double distance) const;
   /// Mean direction away from the body, in the reference mesh, unit.
   const Vec2 &outward() const { return outward_; }
   /// A point of each cell behind the faces, its material and its height over the face

@@ -44,33 +44,32 @@ void SurfaceContactForces::add_energies(Energies &energies) const
 
 void SurfaceContactForces::visit_state(StateArchive &archive)
 {
+  std::vector<SurfaceContact::State> &states = contact_.history();
   std::vector<std::int64_t> face;
-  std::vector<double> along, slip, at_rest, shear, dissipated;
-  for (const SurfaceContact::State &state : contact_.states())
-  {
+  for (const SurfaceContact::State &state : states)
     face.push_back(state.place.face);
-    along.push_back(state.place.s);
-    slip.push_back(state.gap.slip);
-    at_rest.push_back(state.slip_at_rest);
-    shear.push_back(state.traction.shear);
-    dissipated.push_back(state.dissipated);
-  }
   archive.array(name_ + "/face", face);
-  archive.array(name_ + "/along_face", along);
-  archive.array(name_ + "/slip", slip);
-  archive.array(name_ + "/slip_at_rest", at_rest);
-  archive.array(name_ + "/shear_traction", shear);
-  archive.array(name_ + "/dissipated", dissipated);
-  if (!archive.is_loading())
-    return;
-  for (std::size_t p = 0; p < contact_.states().size(); ++p)
+  for (std::size_t p = 0; p < states.size(); ++p)
+    states[p].place.face = static_cast<std::int32_t>(face[p]);
+  const auto visit =
+      [&](const std::string &entry, double &(*member)(SurfaceContact::State &))
   {
-    SurfaceContact::State &state = contact_.history()[p];
-    state.place = {static_cast<std::int32_t>(face[p]), along[p]};
-    state.gap.slip = slip[p];
-    state.slip_at_rest = at_rest[p];
-    state.traction.shear = shear[p];
-    state.dissipated = dissipated[p];
-  }
+    std::vector<double> values;
+    for (SurfaceContact::State &state : states)
+      values.push_back(member(state));
+    archive.array(name_ + "/" + entry, values);
+    for (std::size_t p = 0; p < states.size(); ++p)
+      member(states[p]) = values[p];
+  };
+  using State = SurfaceContact::State;
+  visit("along_face", [](State &s) -> double & { return s.place.s; });
+  visit("normal_x", [](State &s) -> double & { return s.normal.x; });
+  visit("normal_y", [](State &s) -> double & { return s.normal.y; });
+  visit("opening", [](State &s) -> double & { return s.gap.opening; });
+  visit("slip", [](State &s) -> double & { return s.gap.slip; });
+  visit("slip_at_rest", [](State &s) -> double & { return s.slip_at_rest; });
+  visit("normal_traction", [](State &s) -> double & { return s.traction.normal; });
+  visit("shear_traction", [](State &s) -> double & { return s.traction.shear; });
+  visit("dissipated", [](State &s) -> double & { return s.dissipated; });
 }
 } // namespace antiform::coupling

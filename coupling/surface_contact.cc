@@ -82,28 +82,28 @@ void SurfaceContact::respond(const std::size_t point)
     state.slip_at_rest = response.slip_at_rest;
 }
 
-/// Way of the grain's material at the edge over the edge's, in a step: along the tangent
-/// and with the arm of its middle, so that finite rigid rotations make none.
+/// Way of the grain's material at the edge over the edge's in a step that began with the
+/// state @p before: along the tangent and with the arm between then and now, so that
+/// finite rigid rotations make none.
 double SurfaceContact::slip_increment(const discrete::Grains &grains,
                                       const std::size_t point,
-                                      const double *const displacement,
+                                      const State &before,
                                       const double *const velocity,
                                       const double dt) const
 {
-  const State &state = states_[point];
-  const std::int32_t i = interface_.points()[point].grain;
-  const EdgeCurve::Shape shape = interface_.edge().shape(state.place);
-  Vec2 edge_velocity;
+  const State &now = states_[point];
+  const SurfacePoint &at = interface_.points()[point];
+  const EdgeCurve::Shape shape = interface_.edge().shape(now.place);
+  Vec2 of_edge;
   for (unsigned int k = 0; k < shape.n; ++k)
-    edge_velocity +=
+    of_edge +=
         shape.value[k] * Vec2{velocity[shape.dofs[k][0]], velocity[shape.dofs[k][1]]};
-  const Vec2 edge_now = interface_.edge().point(state.place, displacement);
-  const Vec2 arm =
-      edge_now - grains.position(i) - 0.5 * dt * (edge_velocity - grains.velocity(i));
-  const Vec2 normal = (-1. / norm(arm)) * arm;
-  const Vec2 relative =
-      grains.velocity(i) + grains.spin[i] * perpendicular(arm) - edge_velocity;
-  return dt * dot(relative, tangent_of(normal));
+  const Vec2 sum = before.normal + now.normal;
+  const Vec2 normal = (1. / norm(sum)) * sum;
+  const double distance = at.distance + 0.5 * (before.gap.opening + now.gap.opening);
+  const Vec2 of_grain = grains.velocity(at.grain) -
+                        grains.spin[at.grain] * distance * perpendicular(normal);
+  return dt * dot(of_grain - of_edge, tangent_of(normal));
 }
 
 void SurfaceContact::add_forces(discrete::Grains &grains,
@@ -119,12 +119,12 @@ void SurfaceContact::add_forces(discrete::Grains &grains,
     const SurfacePoint &point = interface_.points()[p];
     const EdgeCurve::Nearest seen =
         interface_.edge().nearest(grains.position(point.grain), u, state.place);
+    const State before = state;
     state.place = seen.place;
     state.normal = seen.normal;
     state.gap.opening = seen.distance - point.distance;
     if (shear_stiffness_ > 0. && dt > 0.)
-      state.gap.slip += slip_increment(grains, p, u, mesh_velocity.begin(), dt);
-    const double shear = state.traction.shear, at_rest = state.slip_at_rest;
+      state.gap.slip += slip_increment(grains, p, before, mesh_velocity.begin(), dt);
     if (seen.beyond) // it has slid off the end of the edge
     {
       state.traction = {};
@@ -134,8 +134,9 @@ void SurfaceContact::add_forces(discrete::Grains &grains,
     }
     else
       respond(p);
-    state.dissipated += 0.5 * point.length * (shear + state.traction.shear) *
-                        (state.slip_at_rest - at_rest);
+    state.dissipated += 0.5 * point.length *
+                        (before.traction.shear + state.traction.shear) *
+                        (state.slip_at_rest - before.slip_at_rest);
     if (state.phase == ContactPhase::open)
       continue;
     const Vec2 on_mesh = point.length * (state.traction.normal * seen.normal +

@@ -57,8 +57,7 @@ public:
     double dissipated = 0.;   ///< by slip so far [J]
   };
   const std::vector<State> &states() const { return states_; }
-  /// For a checkpoint: slip, slip at rest, shear traction, dissipation of each point, and
-  /// the faces.
+  /// For a checkpoint.
   std::vector<State> &history() { return states_; }
 
   double elastic_energy() const; ///< since it was built [J]
@@ -92,7 +91,7 @@ private:
   double node_stiffness(std::size_t point) const;
   double slip_increment(const discrete::Grains &grains,
                         std::size_t point,
-                        const double *displacement,
+                        const State &before,
                         const double *velocity,
                         double dt) const;
   void respond(std::size_t point);

@@ -69,16 +69,19 @@ SurfaceInterface::SurfaceInterface(const discrete::Grains &grains,
   std::sort(points_.begin(), points_.end(),
             [&](const SurfacePoint &a, const SurfacePoint &b)
             { return at(a) != at(b) ? at(a) < at(b) : a.grain < b.grain; });
-  // To half way to its neighbours, at the ends of the layer to the grain's own end.
+  const auto margin = [&](const SurfacePoint &point, const double rest)
+  {
+    const double radius = grains.radius[point.grain];
+    return rest <= 2. * radius ? rest : radius;
+  };
+  margins_ = {margin(points_.front(), at(points_.front())),
+              margin(points_.back(), edge_.length() - at(points_.back()))};
   const std::size_t n = points_.size();
   for (std::size_t k = 0; k < n; ++k)
   {
-    const double here = at(points_[k]), radius = grains.radius[points_[k].grain];
-    const double before =
-        k > 0 ? 0.5 * (here - at(points_[k - 1])) : std::min(radius, here);
-    const double after = k + 1 < n ? 0.5 * (at(points_[k + 1]) - here)
-                                   : std::min(radius, edge_.length() - here);
-    points_[k].length = before + after;
+    const double here = at(points_[k]);
+    points_[k].length = (k > 0 ? 0.5 * (here - at(points_[k - 1])) : margins_[0]) +
+                        (k + 1 < n ? 0.5 * (at(points_[k + 1]) - here) : margins_[1]);
   }
 }
 

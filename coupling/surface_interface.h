@@ -6,6 +6,7 @@
 #include "discrete/grains.h"
 #include "discrete/joints.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -48,9 +49,13 @@ public:
 
   const EdgeCurve &edge() const { return edge_; }
   const std::vector<SurfacePoint> &points() const { return points_; }
+  /// What the first and the last point stand for beyond their places: up to the end of
+  /// the edge where no grain has room there, else up to the grain's own end [m].
+  const std::array<double, 2> &margins() const { return margins_; }
 
 private:
   EdgeCurve edge_;
+  std::array<double, 2> margins_;
   std::vector<SurfacePoint> points_; ///< along the edge
 };
 

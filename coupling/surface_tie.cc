@@ -1,7 +1,5 @@
 #include "coupling/surface_tie.h"
 
-#include "continuum/errors.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,25 +8,102 @@ namespace antiform::coupling
 {
 namespace
 {
-/// A vertex has a multiplier when grains stand for more than this share of what its
-/// function covers of the edge: half a cell at the end of an edge, so that only vertices
-/// beyond the layer's ends are left out.
+/// A vertex has a multiplier when the layer covers more than this share of its function:
+/// those beyond the layer's ends have none.
 constexpr double smallest_share = 0.1;
 
 /// What the grains demand of a vertex, in one direction.
 struct Row
 {
-  double length = 0.; ///< sum_i l_i N_J [m]
+  double length = 0.; ///< of the edge, weighted by the vertex' function [m]
   std::map<std::pair<std::int32_t, unsigned int>, double> grains;
   std::map<std::uint32_t, double> mesh;
+
+  LinearForm form() const
+  {
+    LinearForm form;
+    for (const auto &[unknown, value] : grains)
+      if (value != 0.)
+        form.grains.push_back({unknown.first, unknown.second, value / length});
+    for (const auto &[dof, value] : mesh)
+      if (value != 0.)
+        form.mesh.push_back({dof, value / length});
+    return form;
+  }
 };
 
 struct Vertex
 {
-  double face_length = 0.; ///< of the faces that meet there [m]
+  double hat = 0.; ///< integral of its function over the edge [m]
   Vec2 place;
   std::array<Row, 2> rows;
 };
+
+/// A Gauss point of the edge, and the grains between which it lies with their shares.
+struct Sample
+{
+  EdgeCurve::Place place;
+  double length; ///< of the edge that it stands for [m]
+  std::array<std::pair<std::int32_t, double>, 2> grains;
+};
+
+/// Grains by their places along the edge.
+using Chain = std::vector<std::pair<double, std::int32_t>>;
+
+/// The grains between which a place lies and their linear functions there. Beyond the
+/// last one these go on with a grain at least as far inward as the layer reaches outward,
+/// so that a share is not above 2: even stretch along the edge must leave no gap there.
+std::array<std::pair<std::int32_t, double>, 2> shares(const Chain &grains,
+                                                      const double at)
+{
+  auto right = std::lower_bound(grains.begin(), grains.end(), std::pair(at, -1));
+  auto left = right;
+  if (right == grains.begin())
+    while (right + 1 != grains.end() && right->first - left->first < left->first - at)
+      ++right;
+  else if (right == grains.end())
+    for (left = --right;
+         left != grains.begin() && right->first - left->first < at - right->first;)
+      --left;
+  else
+    --left;
+  const double span = right->first - left->first;
+  const double share = span > 0. ? (at - left->first) / span : 0.;
+  return {std::pair(left->second, 1. - share), std::pair(right->second, share)};
+}
+
+/// Between nodes and grains, where all functions are polynomials: exact.
+std::vector<Sample> samples(const SurfaceInterface &interface,
+                            const std::vector<EdgeCurve::Place> &places)
+{
+  const EdgeCurve &edge = interface.edge();
+  Chain grains;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    grains.emplace_back(edge.distance_along(places[k]), interface.points()[k].grain);
+  std::sort(grains.begin(), grains.end());
+  const auto [begin, end] = interface.margins();
+  std::vector<double> cuts{std::max(0., grains.front().first - begin),
+                           std::min(edge.length(), grains.back().first + end)};
+  for (const auto &[at, grain] : grains)
+    cuts.push_back(at);
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(edge.n_faces()); ++f)
+    if (const double at = edge.distance_along({f, 1.}); at > cuts[0] && at < cuts[1])
+      cuts.push_back(at);
+  std::sort(cuts.begin(), cuts.end());
+
+  std::vector<Sample> all;
+  const std::array<double, 3> nodes{0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)},
+      weights{5. / 18., 8. / 18., 5. / 18.};
+  for (std::size_t k = 0; k + 1 < cuts.size(); ++k)
+    for (unsigned int q = 0; q < nodes.size(); ++q)
+    {
+      const double length = cuts[k + 1] - cuts[k], at = cuts[k] + nodes[q] * length;
+      if (length <= 0.)
+        continue;
+      all.push_back({edge.place_at(at), weights[q] * length, shares(grains, at)});
+    }
+  return all;
+}
 } // namespace
 
 SurfaceTie::SurfaceTie(const discrete::Grains &grains,
@@ -120,57 +195,50 @@ void SurfaceTie::build_rows(const SurfaceInterface &interface,
     for (const unsigned int end : {0u, 1u})
     {
       Vertex &vertex = vertices[edge.dofs(f)[end][0]];
-      vertex.face_length += edge.distance_along({f, 1.}) - edge.distance_along({f, 0.});
+      vertex.hat += 0.5 * (edge.distance_along({f, 1.}) - edge.distance_along({f, 0.}));
       vertex.place = edge.point({f, static_cast<double>(end)}, nullptr);
     }
 
   const unsigned int n_directions = kind_ == Kind::cemented ? 2 : 1;
-  for (std::size_t k = 0; k < places.size(); ++k)
+  for (const Sample &sample : samples(interface, places))
   {
-    const std::int32_t i = interface.points()[k].grain;
-    const EdgeCurve::Shape shape = edge.shape(places[k]);
-    const Vec2 arm = edge.point(places[k], displacement) - grains.position(i);
-    const Vec2 along = edge.tangent(places[k], displacement);
-    const std::array<Vec2, 2> cemented{Vec2{1., 0.}, Vec2{0., 1.}};
+    const EdgeCurve::Shape shape = edge.shape(sample.place);
+    const Vec2 point = edge.point(sample.place, displacement),
+               along = edge.tangent(sample.place, displacement);
+    const std::array<Vec2, 2> directions =
+        kind_ == Kind::cemented
+            ? std::array<Vec2, 2>{Vec2{1., 0.}, Vec2{0., 1.}}
+            : std::array<Vec2, 2>{(-1. / norm(along)) * perpendicular(along), Vec2{}};
     for (const unsigned int end : {0u, 1u})
-    {
-      const double hat = end == 0 ? 1. - places[k].s : places[k].s;
-      const double weight = interface.points()[k].length * hat;
-      Vertex &vertex = vertices[shape.dofs[end][0]];
       for (unsigned int c = 0; c < n_directions; ++c)
       {
-        const Vec2 direction = kind_ == Kind::cemented
-                                   ? cemented[c]
-                                   : (-1. / norm(along)) * perpendicular(along);
-        Row &row = vertex.rows[c];
+        const double hat = end == 0 ? 1. - sample.place.s : sample.place.s;
+        const double weight = sample.length * hat;
+        const Vec2 &direction = directions[c];
+        Row &row = vertices[shape.dofs[end][0]].rows[c];
         row.length += weight;
-        row.grains[{i, 0}] += weight * direction.x;
-        row.grains[{i, 1}] += weight * direction.y;
-        row.grains[{i, 2}] += weight * cross(arm, direction);
+        for (const auto &[i, share] : sample.grains)
+        {
+          const double w = weight * share;
+          row.grains[{i, 0}] += w * direction.x;
+          row.grains[{i, 1}] += w * direction.y;
+          row.grains[{i, 2}] += w * cross(point - grains.position(i), direction);
+        }
         for (unsigned int m = 0; m < shape.n; ++m)
         {
           row.mesh[shape.dofs[m][0]] -= weight * shape.value[m] * direction.x;
           row.mesh[shape.dofs[m][1]] -= weight * shape.value[m] * direction.y;
         }
       }
-    }
   }
 
   for (const auto &[dof, vertex] : vertices)
     for (unsigned int c = 0; c < n_directions; ++c)
     {
       const Row &row = vertex.rows[c];
-      if (row.length <= smallest_share * 0.5 * vertex.face_length)
+      if (row.length <= smallest_share * vertex.hat)
         continue;
-      LinearForm form;
-      const double scale = 1. / row.length;
-      for (const auto &[unknown, value] : row.grains)
-        if (value != 0.)
-          form.grains.push_back({unknown.first, unknown.second, scale * value});
-      for (const auto &[mesh_dof, value] : row.mesh)
-        if (value != 0.)
-          form.mesh.push_back({mesh_dof, scale * value});
-      rows_.push_back(std::move(form));
+      rows_.push_back(row.form());
       row_names_.push_back("vertex (" + std::to_string(vertex.place.x) + " m, " +
                            std::to_string(vertex.place.y) + " m) of the edge");
     }
@@ -204,19 +272,8 @@ void SurfaceTie::factorise(const discrete::Grains &grains,
                          inverse_mass.begin());
   const Matrix product = matrix_ * inverse_mass_.asDiagonal() *
                          Eigen::SparseMatrix<double>(matrix_.transpose());
-  try
-  {
-    solver_.emplace(Eigen::SparseMatrix<double>(product),
-                    [this](const Eigen::Index row) { return row_names_[row]; });
-  }
-  catch (const NumericalError &error)
-  {
-    throw NumericalError("surface interface",
-                         "the grains that face the mesh's edge do not tell its vertices "
-                         "apart: take larger cells (" +
-                             std::string(error.what()) + ")",
-                         error.value, error.limit);
-  }
+  solver_.emplace(Eigen::SparseMatrix<double>(product),
+                  [this](const Eigen::Index row) { return row_names_[row]; });
 }
 
 bool SurfaceTie::is_factorised_for(const discrete::Grains &grains) const

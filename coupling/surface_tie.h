@@ -16,14 +16,14 @@ namespace antiform::coupling
 {
 /// Joins outer grains and mesh edges by multipliers in the edges' trace space, a mortar
 /// (docs/theory/surface_interface.md): at each vertex J of an edge
-///   g_J = sum_i l_i N_J(x_i) (d_i + theta_i z x a_i - sum_K N_K(x_i) U_K) = 0,
-/// x and y where cemented, along the edge's normals n_i where sliding. x_i is the place
-/// on the edge that faces grain i, a_i the arm from the grain's centre to it: rigid
-/// motions of all leave no gap, and forces on grain and mesh act at one point. A row is
-/// divided by the length sum_i l_i N_J(x_i), so that its multiplier L_J is a force [N];
-/// the traction is linear between the values L_J over length. Kinematics are linear in
-/// the rotation, as those of the mesh, unless follow() is asked to turn arms and normals.
-/// One rank.
+///   g_J = int N_J (sum_i phi_i (d_i + theta_i z x (x - x_i)) - sum_K N_K U_K) ds = 0,
+/// x and y where cemented, along the edge's normals where sliding. phi_i are the linear
+/// functions between grains that are neighbours along the edge; a grain moves the edge as
+/// a rigid arm from its centre. So rigid motions of all leave no gap, forces on grain and
+/// mesh act at one point, and an even traction loads the mesh evenly, whatever places the
+/// grains have in its cells. A row is divided by int N_J ds, so that its multiplier L_J
+/// is a force [N]. Kinematics are linear in the rotation, as those of the mesh, unless
+/// follow() is asked to turn arms and normals. One rank.
 class SurfaceTie
 {
 public:
@@ -41,7 +41,7 @@ public:
   Kind kind() const { return kind_; }
   const std::vector<SurfaceInterface> &interfaces() const { return interfaces_; }
   std::size_t n_multipliers() const { return rows_.size(); }
-  /// The constraints, each a mean displacement gap [m]: divided by sum_i l_i N_J(x_i).
+  /// The constraints, each a mean displacement gap [m].
   const std::vector<LinearForm> &rows() const { return rows_; }
   void add_to(StaticSystem &system) const;
 
@@ -50,8 +50,8 @@ public:
   /// factorise() afterwards.
   void follow(const discrete::Grains &grains, const continuum::Vector &displacement);
 
-  /// Build and factorise S = C Mi C^T for the inertial masses; throws NumericalError
-  /// where fewer than about two grains a cell face the edge.
+  /// Build and factorise S = C Mi C^T for the inertial masses. Throws NumericalError that
+  /// names a vertex if all that its row binds is held.
   void factorise(const discrete::Grains &grains, const continuum::Vector &inverse_mass);
   /// Whether the grains have the masses that S was factorised for.
   bool is_factorised_for(const discrete::Grains &grains) const;
@@ -66,7 +66,7 @@ public:
   /// f - C^T L with S L = C Mi f; at rest they vanish where f does not.
   void constrain_forces(discrete::Grains &grains, continuum::Vector &mesh_force) const;
 
-  /// Largest |g_J| over sum_i l_i N_J(x_i), linear kinematics [m].
+  /// Largest |g_J| over int N_J ds, linear kinematics [m].
   double displacement_gap(const discrete::Grains &grains,
                           const continuum::Vector &displacement) const;
 
