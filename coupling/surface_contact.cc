@@ -125,15 +125,7 @@ void SurfaceContact::add_forces(discrete::Grains &grains,
     state.gap.opening = seen.distance - point.distance;
     if (shear_stiffness_ > 0. && dt > 0.)
       state.gap.slip += slip_increment(grains, p, before, mesh_velocity.begin(), dt);
-    if (seen.beyond) // it has slid off the end of the edge
-    {
-      state.traction = {};
-      state.phase = ContactPhase::open;
-      if (shear_stiffness_ > 0.)
-        state.slip_at_rest = state.gap.slip + initial_[p].shear / shear_stiffness_;
-    }
-    else
-      respond(p);
+    respond(p);
     state.dissipated += 0.5 * point.length *
                         (before.traction.shear + state.traction.shear) *
                         (state.slip_at_rest - before.slip_at_rest);

@@ -17,9 +17,9 @@ namespace antiform::coupling
 ///   opening = |x_i - x_e| - D_i,  x_e the place of the edge nearest to the centre x_i,
 /// D_i their distance as built, and slip the way of the grain's material at x_e along the
 /// edge's, rolling included. Force on the grain at x_e, the opposite on the edge's nodes
-/// by their shape functions there: so momentum and angular momentum are kept. Tractions
-/// are per length l_i of the reference edge that the grain stands for; a grain takes it
-/// along as it slides. One rank.
+/// by their shape functions there: so momentum and angular momentum are kept. At the end
+/// of the edge grains roll off its corner. Tractions are per length l_i of the reference
+/// edge that the grain stands for; a grain takes it along as it slides. One rank.
 class SurfaceContact
 {
 public:
