@@ -30,6 +30,15 @@ void TiedSurface::run(const Stage stage, const Clock &clock)
   }
 }
 
+void TiedSurface::visit_state(StateArchive &archive)
+{
+  if (follow_every_ == 0)
+    return; // as the scene built it
+  tie_.visit_state(archive, "surface_tie");
+  if (archive.is_loading())
+    tie_.factorise(grains_.grains, mesh_.inverse_mass);
+}
+
 void SurfaceContactForces::run(const Stage, const Clock &clock)
 {
   contact_.add_forces(grains_.grains, mesh_.displacement, mesh_.velocity,

@@ -31,6 +31,7 @@ public:
   {
   }
   void run(Stage stage, const Clock &clock) override;
+  void visit_state(StateArchive &archive) override;
 
 private:
   SurfaceTie &tie_;

@@ -145,7 +145,11 @@ void SurfaceTie::build_rows(const discrete::Grains &grains, const double *displa
   row_names_.clear();
   for (std::size_t n = 0; n < interfaces_.size(); ++n)
     build_rows(interfaces_[n], places_[n], grains, displacement);
+  number_unknowns();
+}
 
+void SurfaceTie::number_unknowns()
+{
   tied_grains_.clear();
   tied_dofs_.clear();
   for (const LinearForm &row : rows_)
@@ -242,6 +246,65 @@ void SurfaceTie::build_rows(const SurfaceInterface &interface,
       row_names_.push_back("vertex (" + std::to_string(vertex.place.x) + " m, " +
                            std::to_string(vertex.place.y) + " m) of the edge");
     }
+}
+
+void SurfaceTie::visit_state(StateArchive &archive, const std::string &name)
+{
+  std::vector<std::int64_t> face, term_of_row, unknown;
+  std::vector<double> along, value;
+  for (const auto &places : places_)
+    for (const EdgeCurve::Place &place : places)
+    {
+      face.push_back(place.face);
+      along.push_back(place.s);
+    }
+  for (const LinearForm &row : rows_)
+  {
+    term_of_row.push_back(static_cast<std::int64_t>(row.grains.size()));
+    term_of_row.push_back(static_cast<std::int64_t>(row.mesh.size()));
+    for (const LinearForm::GrainTerm &term : row.grains)
+    {
+      unknown.push_back(3 * std::int64_t(term.grain) + term.component);
+      value.push_back(term.value);
+    }
+    for (const LinearForm::MeshTerm &term : row.mesh)
+    {
+      unknown.push_back(term.dof);
+      value.push_back(term.value);
+    }
+  }
+  if (archive.is_loading())
+    for (auto *list : {&term_of_row, &unknown})
+      list->clear(); // as many as the file has: rows change as grains slide
+  if (archive.is_loading())
+    value.clear();
+  archive.array(name + "/face", face);
+  archive.array(name + "/along_face", along);
+  archive.array(name + "/terms_of_rows", term_of_row);
+  archive.array(name + "/unknowns", unknown);
+  archive.array(name + "/values", value);
+  if (!archive.is_loading())
+    return;
+  std::size_t k = 0;
+  for (auto &places : places_)
+    for (EdgeCurve::Place &place : places)
+    {
+      place = {static_cast<std::int32_t>(face[k]), along[k]};
+      ++k;
+    }
+  rows_.assign(term_of_row.size() / 2, {});
+  k = 0;
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+  {
+    for (std::int64_t n = 0; n < term_of_row[2 * r]; ++n, ++k)
+      rows_[r].grains.push_back({static_cast<std::int32_t>(unknown[k] / 3),
+                                 static_cast<unsigned int>(unknown[k] % 3), value[k]});
+    for (std::int64_t n = 0; n < term_of_row[2 * r + 1]; ++n, ++k)
+      rows_[r].mesh.push_back({static_cast<std::uint32_t>(unknown[k]), value[k]});
+  }
+  row_names_.assign(rows_.size(), "a vertex of the edge");
+  number_unknowns();
+  solver_.reset();
 }
 
 void SurfaceTie::add_to(StaticSystem &system) const

@@ -2,6 +2,7 @@
 
 #include "coupling/constraint_solver.h"
 #include "coupling/linear_form.h"
+#include "coupling/state_file.h"
 #include "coupling/static_system.h"
 #include "coupling/surface_interface.h"
 
@@ -50,6 +51,9 @@ public:
   /// factorise() afterwards.
   void follow(const discrete::Grains &grains, const continuum::Vector &displacement);
 
+  /// Places and rows of the last follow(). After loading it needs factorise().
+  void visit_state(StateArchive &archive, const std::string &name);
+
   /// Build and factorise S = C Mi C^T for the inertial masses. Throws NumericalError that
   /// names a vertex if all that its row binds is held.
   void factorise(const discrete::Grains &grains, const continuum::Vector &inverse_mass);
@@ -74,6 +78,7 @@ private:
   using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
   void build_rows(const discrete::Grains &grains, const double *displacement);
+  void number_unknowns();
   /// Rows of one edge, @p displacement as EdgeCurve takes it.
   void build_rows(const SurfaceInterface &interface,
                   const std::vector<EdgeCurve::Place> &places,
