@@ -207,13 +207,12 @@ StaticSystem::tie_row(const GrainTie &tie, const unsigned int component) const
   return row;
 }
 
-StaticSolution StaticSystem::solve() const
+SaddlePoint StaticSystem::saddle_point() const
 {
-  const std::size_t n_primal = force_.size();
+  const std::size_t n_primal = n_unknowns();
   const std::size_t n_rows = bridging_ != nullptr ? bridging_->grain_rows().n_rows() : 0;
   const std::size_t n_ties = bridging_ != nullptr ? bridging_->ties().ties().size() : 0;
-  const std::size_t forms_begin = n_primal + 2 * n_rows + 3 * n_ties;
-  const std::size_t n = forms_begin + constraints_.size();
+  const std::size_t forms_begin = 2 * n_rows + 3 * n_ties;
 
   Triplets all;
   for (std::size_t j = 0; j < joints_.size(); ++j)
@@ -258,6 +257,7 @@ StaticSolution StaticSystem::solve() const
     if (entry.row() == entry.col())
       diagonal += entry.value();
   diagonal /= static_cast<double>(n_primal);
+  Triplets constraint;
   if (bridging_ != nullptr)
   {
     const std::vector<std::int32_t> &overlap = bridging_->overlap_grains();
@@ -271,38 +271,51 @@ StaticSolution StaticSystem::solve() const
       const double scale = diagonal / mass;
       for (const unsigned int c : {0u, 1u})
       {
-        const std::size_t row = n_primal + c * n_rows + r;
+        const std::size_t row = c * n_rows + r;
         for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
-        {
-          const std::size_t column = index(overlap[of_grains.column[k]], c);
-          all.add(row, column, scale * of_grains.value[k]);
-          all.add(column, row, scale * of_grains.value[k]);
-        }
+          constraint.add(row, index(overlap[of_grains.column[k]], c),
+                   scale * of_grains.value[k]);
         for (std::int32_t k = of_mesh.begin[r]; k < of_mesh.begin[r + 1]; ++k)
-        {
-          const std::size_t column =
-              mesh_begin() + bridging_->node_dofs()[of_mesh.column[k]][c];
-          all.add(row, column, scale * of_mesh.value[k]);
-          all.add(column, row, scale * of_mesh.value[k]);
-        }
+          constraint.add(row, mesh_begin() + bridging_->node_dofs()[of_mesh.column[k]][c],
+                   scale * of_mesh.value[k]);
       }
     }
   }
   for (std::size_t r = 0; r < constraints_.size(); ++r)
     for (const auto &[column, value] : constraints_[r])
-    {
-      all.add(forms_begin + r, column, diagonal * value);
-      all.add(column, forms_begin + r, diagonal * value);
-    }
-
+      constraint.add(forms_begin + r, column, diagonal * value);
   for (std::size_t t = 0; t < n_ties; ++t)
     for (const unsigned int c : {0u, 1u, 2u})
       for (const auto &[column, value] : tie_row(bridging_->ties().ties()[t], c))
-      {
-        const std::size_t row = n_primal + 2 * n_rows + 3 * t + c;
-        all.add(row, column, diagonal * value);
-        all.add(column, row, diagonal * value);
-      }
+        constraint.add(2 * n_rows + 3 * t + c, column, diagonal * value);
+
+  SaddlePoint result;
+  result.diagonal = diagonal;
+  const auto n = static_cast<Eigen::Index>(n_primal),
+             m = static_cast<Eigen::Index>(forms_begin + constraints_.size());
+  result.stiffness.resize(n, n);
+  result.stiffness.setFromTriplets(all.entries.begin(), all.entries.end());
+  result.constraint.resize(m, n);
+  result.constraint.setFromTriplets(constraint.entries.begin(), constraint.entries.end());
+  return result;
+}
+
+StaticSolution StaticSystem::solve() const
+{
+  const SaddlePoint parts = saddle_point();
+  const auto n_primal = static_cast<std::size_t>(parts.stiffness.rows());
+  const std::size_t n =
+      n_primal + static_cast<std::size_t>(parts.constraint.rows());
+  Triplets all;
+  for (Eigen::Index row = 0; row < parts.stiffness.rows(); ++row)
+    for (Matrix::InnerIterator it(parts.stiffness, row); it; ++it)
+      all.add(row, it.col(), it.value());
+  for (Eigen::Index row = 0; row < parts.constraint.rows(); ++row)
+    for (Matrix::InnerIterator it(parts.constraint, row); it; ++it)
+    {
+      all.add(n_primal + row, it.col(), it.value());
+      all.add(it.col(), n_primal + row, it.value());
+    }
 
   // Fixed unknowns: identity rows, their columns to the right-hand side.
   Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
@@ -322,8 +335,8 @@ StaticSolution StaticSystem::solve() const
   }
   for (const auto &[i, value] : fixed_)
   {
-    free.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal);
-    right[static_cast<Eigen::Index>(i)] = diagonal * value;
+    free.emplace_back(static_cast<int>(i), static_cast<int>(i), parts.diagonal);
+    right[static_cast<Eigen::Index>(i)] = parts.diagonal * value;
   }
   Matrix matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   matrix.setFromTriplets(free.begin(), free.end());
@@ -333,7 +346,7 @@ StaticSolution StaticSystem::solve() const
                                                    static_cast<Eigen::Index>(n));
   const double scale = std::max(right.cwiseAbs().maxCoeff(),
                                 (matrix.cwiseAbs() * solution.cwiseAbs()).maxCoeff());
-  StaticSolution result;
+  StaticSolution result = solution_of(solution.head(parts.stiffness.rows()));
   result.residual =
       scale > 0. ? (matrix * solution - right).cwiseAbs().maxCoeff() / scale : 0.;
   if (!(result.residual < 1e-8))
@@ -342,17 +355,24 @@ StaticSolution StaticSystem::solve() const
         "the direct solution does not satisfy its equations: part of the "
         "section has no path to a support",
         result.residual, 1e-8);
+  return result;
+}
+
+StaticSolution StaticSystem::solution_of(const Eigen::VectorXd &x) const
+{
+  StaticSolution result;
+  const auto at = [&x](const std::size_t i) { return x[static_cast<Eigen::Index>(i)]; };
   for (std::size_t i = 0; i < grains_.size(); ++i)
   {
-    result.ux.push_back(x[index(i, 0)]);
-    result.uy.push_back(x[index(i, 1)]);
-    result.rotation.push_back(x[index(i, 2)]);
+    result.ux.push_back(at(index(i, 0)));
+    result.uy.push_back(at(index(i, 1)));
+    result.rotation.push_back(at(index(i, 2)));
   }
   if (solid_ != nullptr)
   {
     result.mesh = solid_->make_vector();
     for (std::size_t d = 0; d < solid_->dof_handler().n_dofs(); ++d)
-      result.mesh(d) = x[mesh_begin() + d];
+      result.mesh(d) = at(mesh_begin() + d);
     result.mesh.update_ghost_values();
   }
   return result;

@@ -6,6 +6,8 @@
 #include "discrete/grains.h"
 #include "discrete/joints.h"
 
+#include <Eigen/SparseCore>
+
 #include <map>
 #include <vector>
 
@@ -17,6 +19,15 @@ struct StaticSolution
   std::vector<double> ux, uy, rotation; ///< per grain [m], [rad]
   continuum::Vector mesh;               ///< [m]; empty without a mesh
   double residual = 0.; ///< largest |K u + C^T L - f| over the largest |f| or |K u| [-]
+};
+
+/// Matrices of a section before its supports are taken out. Unknown 3 i + c is component
+/// c of grain i (x, y, rotation); the dofs of the mesh follow.
+struct SaddlePoint
+{
+  Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness;  ///< springs included
+  Eigen::SparseMatrix<double, Eigen::RowMajor> constraint; ///< C, scaled; may have no rows
+  double diagonal = 0.;                                    ///< mean of the stiffness'
 };
 
 /// Linear static equilibrium of intact bonded grains, mesh and bridging domain: the
@@ -51,7 +62,9 @@ public:
   /// Throws NumericalError when the factorisation fails or the residual exceeds 1e-8.
   StaticSolution solve() const;
 
-private:
+  SaddlePoint saddle_point() const;
+  /// Prescribed unknowns and their values, by the unknowns' numbers.
+  const std::map<std::size_t, double> &fixed() const { return fixed_; }
   std::size_t index(const std::size_t grain, const unsigned int component) const
   {
     return 3 * grain + component;
@@ -60,6 +73,15 @@ private:
   std::vector<std::pair<std::size_t, double>> tie_row(const GrainTie &tie,
                                                       unsigned int component) const;
   std::size_t mesh_begin() const { return 3 * grains_.size(); }
+  std::size_t n_unknowns() const { return force_.size(); }
+  const discrete::Grains &grains() const { return grains_; }
+  const discrete::Joints &joints() const { return joints_; }
+  /// Null without a mesh.
+  const continuum::ElasticSolid *solid() const { return solid_; }
+  /// Displacements in the unknowns @p x.
+  StaticSolution solution_of(const Eigen::VectorXd &x) const;
+
+private:
 
   const discrete::Grains &grains_;
   const discrete::Joints &joints_;
