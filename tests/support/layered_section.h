@@ -16,6 +16,7 @@ struct LayerShape
   double contrast = 20.;
   double buffer = 4., overlap = 8., cell = 2.; ///< of the coupled model
   bool cubic = false;
+  double mesh_modulus_ratio = 1.; ///< of the mesh over its due [-]
 
   static double row() { return 0.5 * std::sqrt(3.); }
   double thickness() const { return (2. * half_rows + 1.) * row(); }
@@ -127,7 +128,7 @@ private:
     continuum::ElasticMaterial material = lattice_material(elastic_law());
     for (auto &row : material.stiffness)
       for (double &c : row)
-        c /= shape_.contrast;
+        c *= shape_.mesh_modulus_ratio / shape_.contrast;
     model_.join_bonded(material, shape_.cell * shape_.cell);
   }
 
