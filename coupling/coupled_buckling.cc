@@ -231,7 +231,9 @@ double roughly_largest(const Map &map, const SparseMatrix &K)
   std::vector<VectorXd> basis;
   std::vector<double> diagonal, beside;
   double norm = std::sqrt(v.dot(K * v)), scale = 0., last = 0.;
-  while (static_cast<int>(basis.size()) < most && norm > 1e-10 * scale && norm > 0.)
+  int settled = 0; // steps without much gain; who calls checks by the inertia
+  while (static_cast<int>(basis.size()) < most && settled < 4 && norm > 1e-10 * scale &&
+         norm > 0.)
   {
     if (!basis.empty())
       beside.push_back(norm);
@@ -249,7 +251,9 @@ double roughly_largest(const Map &map, const SparseMatrix &K)
     small.computeFromTridiagonal(Eigen::Map<VectorXd>(diagonal.data(), n),
                                  Eigen::Map<VectorXd>(beside.data(), n - 1),
                                  Eigen::EigenvaluesOnly);
+    const double before = last;
     last = small.eigenvalues()[n - 1];
+    settled = last - before < 2e-3 * last ? settled + 1 : 0;
   }
   return last > 1e-10 * scale ? last : 0.; // round-off of a map without positive ones
 }

@@ -25,7 +25,6 @@ struct SymmetricFactor::Mumps
     for (const int quiet : {1, 2, 3})
       icntl(quiet) = -1;
     icntl(4) = 0;
-    icntl(10) = 2;  // steps of refinement
     icntl(13) = 1;  // the last front as the others: its pivots' signs are counted
     icntl(14) = 50; // [%] space for delayed pivots
     icntl(24) = 1;  // pivots of round-off are counted

@@ -17,7 +17,6 @@ public:
   ~SymmetricFactor();
   SymmetricFactor(SymmetricFactor &&) noexcept;
 
-  /// With two steps of refinement.
   Eigen::VectorXd solve(const Eigen::VectorXd &right) const;
 
   int n_negative() const;

@@ -1,9 +1,12 @@
 #pragma once
-// A stiff bonded layer of the hexagonal lattice in a soft matrix of the same lattice,
-// whole in grains, or with mesh where the layer is far. Unit of length is the grain
-// diameter, of stress the modulus E* of the layer's grains.
+// A stiff bonded layer of the hexagonal lattice, or of a random packing, in a soft matrix
+// of the same, whole in grains, or with mesh where the layer is far. Unit of length is
+// the grain diameter, of stress the modulus E* of the layer's grains.
 #include "coupling/coupled_buckling.h"
 #include "support/coupling_fixtures.h"
+
+#include "discrete/homogenise.h"
+#include "discrete/packing.h"
 
 namespace antiform::coupling::test
 {
@@ -29,10 +32,30 @@ struct LayerShape
   double core_bottom() const { return -edge() - buffer; }
 };
 
+/// A random packing as large as a section, and what it answers to strain.
+struct RandomRock
+{
+  static constexpr double installation_gap = 0.15;
+
+  RandomRock(const LayerShape &shape, const std::uint64_t seed)
+  {
+    discrete::PackingParameters parameters;
+    parameters.seed = seed;
+    tile = discrete::pack_periodic(
+        {static_cast<double>(shape.length), shape.top() - shape.bottom()}, parameters);
+    response = discrete::homogenise(tile, installation_gap, elastic_law());
+  }
+  discrete::PeriodicTile tile;
+  discrete::TileResponse response; ///< of the modulus 1
+};
+
 class LayeredSection
 {
 public:
-  LayeredSection(const LayerShape &shape, const bool coupled)
+  /// \param rock instead of the lattice; outlives the section
+  LayeredSection(const LayerShape &shape,
+                 const bool coupled,
+                 const RandomRock *const rock = nullptr)
       : shape_(shape)
       , coupled_(coupled)
   {
@@ -41,9 +64,12 @@ public:
     };
     model_.weight.width = shape.overlap;
     model_.weight.cubic = shape.cubic;
-    add_grains();
+    if (rock == nullptr)
+      add_lattice();
+    else
+      add_random_grains(*rock);
     if (coupled)
-      add_mesh();
+      add_mesh(rock == nullptr ? lattice_material(elastic_law()) : material_of(*rock));
   }
 
   std::size_t n_grains() const { return model_.state.grains.size(); }
@@ -67,7 +93,23 @@ public:
                                  geometric_stiffness(system, system.solve(), measure));
   }
 
-  /// Half waves of the layer's middle row that have the largest amplitude, and that
+  /// Of the present state after the linear shortening @p strain, by the joints' exact
+  /// tangent. \param mesh_turns whether the mesh has a geometric stiffness; in runs it
+  /// has none
+  int n_unstable_now(const double strain, const bool mesh_turns)
+  {
+    StaticSystem system = supported(strain);
+    const StaticSolution state = system.solve();
+    discrete::Grains &g = model_.state.grains;
+    g.displacement_x = state.ux;
+    g.displacement_y = state.uy;
+    g.rotation = state.rotation;
+    return n_unstable_directions(
+        system, present_geometric_stiffness(system, coupled_ && mesh_turns ? &state.mesh
+                                                                           : nullptr));
+  }
+
+  /// Half waves of the layer's middle that have the largest amplitude, and that
   /// amplitude over the root of the sum of all squares.
   std::pair<int, double> half_waves(const CoupledMode &mode) const
   {
@@ -78,7 +120,7 @@ public:
     {
       double amplitude = 0.;
       for (std::size_t i = 0; i < g.size(); ++i)
-        if (std::abs(g.reference_y[i]) < 1e-6)
+        if (std::abs(g.reference_y[i]) < 0.4) // of the lattice one row
           amplitude +=
               mode.shape.uy[i] * std::cos(m * M_PI * g.reference_x[i] / shape_.length);
       squares += amplitude * amplitude;
@@ -89,27 +131,75 @@ public:
   }
 
 private:
-  void add_grains()
+  bool holds(const Vec2 &x) const { return !coupled_ || model_.weight.holds_grains(x); }
+  double modulus(const std::size_t i) const
   {
-    const double small = 1e-6;
+    return model_.state.grains.region[i] == 0 ? 1. : 1. / shape_.contrast;
+  }
+
+  void add_lattice()
+  {
     discrete::Grains lattice = hexagonal_lattice(
         {0., static_cast<double>(shape_.length), shape_.bottom(), shape_.top()}, {0., 0.},
-        [this](const Vec2 &x) { return !coupled_ || model_.weight.holds_grains(x); });
+        [this](const Vec2 &x) { return holds(x); });
     discrete::Grains &grains = model_.state.grains = std::move(lattice);
     for (std::size_t i = 0; i < grains.size(); ++i)
       grains.region[i] = std::abs(grains.reference_y[i]) < shape_.edge() ? 0 : 1;
     discrete::Joints &joints = model_.state.joints;
     joints.begin_group(elastic_law(), 0, "grains");
-    const auto modulus = [&](const std::int32_t i) {
-      return grains.region[static_cast<std::size_t>(i)] == 0 ? 1. : 1. / shape_.contrast;
-    };
     for (const auto &[a, b] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 1}})
-      for (const auto &[i, j] : discrete::pairs_within(grains, small, a, b))
-        joints.add(grains, i, j, modulus(i), modulus(j));
+      for (const auto &[i, j] : discrete::pairs_within(grains, 1e-6, a, b))
+        joints.add(grains, i, j, modulus(static_cast<std::size_t>(i)),
+                   modulus(static_cast<std::size_t>(j)));
     joints.finish(grains.size());
   }
 
-  void add_mesh()
+  static continuum::ElasticMaterial material_of(const RandomRock &rock)
+  {
+    continuum::ElasticMaterial material;
+    material.stiffness = rock.response.stiffness;
+    material.density = rock.response.density_factor;
+    return material;
+  }
+
+  /// The tile, cut open at its sides; grains that the cut leaves loose go.
+  void add_random_grains(const RandomRock &rock)
+  {
+    const auto place = [&](const int i)
+    {
+      return rock.tile.disks[static_cast<std::size_t>(i)].centre +
+             Vec2{0., shape_.bottom()};
+    };
+    std::vector<const discrete::TileJoint *> inside;
+    std::vector<std::int32_t> number(rock.tile.disks.size(), -1);
+    discrete::Grains &grains = model_.state.grains;
+    for (const discrete::TileJoint &joint : rock.response.joints)
+      if (norm(joint.shift) == 0. && holds(place(joint.first)) &&
+          holds(place(joint.second)))
+        inside.push_back(&joint);
+    const auto number_of = [&](const int i)
+    {
+      std::int32_t &grain = number[static_cast<std::size_t>(i)];
+      if (grain < 0)
+      {
+        grain = static_cast<std::int32_t>(grains.size());
+        grains.add(place(i), rock.tile.disks[static_cast<std::size_t>(i)].radius, 1.,
+                   std::abs(place(i).y) < shape_.edge() ? 0 : 1);
+      }
+      return grain;
+    };
+    discrete::Joints &joints = model_.state.joints;
+    joints.begin_group(elastic_law(), 0, "grains");
+    for (const discrete::TileJoint *const joint : inside)
+    {
+      const std::int32_t i = number_of(joint->first), j = number_of(joint->second);
+      joints.add(grains, i, j, modulus(static_cast<std::size_t>(i)),
+                 modulus(static_cast<std::size_t>(j)));
+    }
+    joints.finish(grains.size());
+  }
+
+  void add_mesh(continuum::ElasticMaterial material)
   {
     const auto between = [this](const double from, const double to)
     {
@@ -125,7 +215,6 @@ private:
     make_cells(model_.triangulation, between(0., shape_.length), y,
                [this](const Vec2 &centre)
                { return model_.weight.distance_to_core(centre) > 0.; });
-    continuum::ElasticMaterial material = lattice_material(elastic_law());
     for (auto &row : material.stiffness)
       for (double &c : row)
         c *= shape_.mesh_modulus_ratio / shape_.contrast;
@@ -143,7 +232,7 @@ private:
       const Vec2 x = g.reference(i);
       if (std::min(x.x, L - x.x) < 0.75) // the first of each row
         system.fix_grain(i, 0, pushed(x.x));
-      if (x.y < bottom + 1e-6)
+      if (x.y < bottom + 0.5) // of the lattice one row
         system.fix_grain(i, 1, 0.);
     }
     for (std::size_t dof = 0; coupled_ && dof < model_.n_mesh_dofs(); ++dof)
