@@ -47,8 +47,8 @@ void refuse_damage(const discrete::Joints &joints)
     if (joints.damage[j] >= 0)
       throw std::invalid_argument(
           "geometric stiffness: joint " + std::to_string(j) +
-          " is damaged; its tangent depends on the direction of motion. Only sections "
-          "of intact joints have the linear buckling that is computed here.");
+          " is damaged: linear buckling takes the prestress from intact joints. Ask for "
+          "the stability of the present state instead.");
 }
 
 /// Less the integral of w_C S : e e, S from @p displacement: Green's to Biot's strain.
@@ -159,20 +159,21 @@ SparseMatrix geometric_stiffness(const StaticSystem &system,
 
 SparseMatrix present_geometric_stiffness(const StaticSystem &system,
                                          const continuum::Vector *const mesh_displacement,
-                                         const StrainMeasure measure)
+                                         const StrainMeasure measure,
+                                         const double kept_share)
 {
   const discrete::Joints &joints = system.joints();
-  refuse_damage(joints);
   Triplets entries;
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
+    const double taken = joints.damage[j] < 0 ? 1. : 1. - kept_share;
     discrete::JointMatrix G = discrete::tangent_stiffness(system.grains(), joints, j);
     const auto rows = joint_rows(joints, j);
     const auto stiffness = joint_stiffness(joints, j);
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b)
         for (std::size_t r = 0; r < 3; ++r)
-          G[a][b] -= rows[r][a] * stiffness[r] * rows[r][b];
+          G[a][b] -= taken * rows[r][a] * stiffness[r] * rows[r][b];
     add_joint(system, j, G, entries);
   }
   if (mesh_displacement != nullptr)

@@ -30,8 +30,11 @@ SparseMatrix geometric_stiffness(const StaticSystem &system,
 /// joints exactly, at the displacements of the system's grains (the derivative of the
 /// kernel's forces), of the mesh to first order in the stress of @p mesh_displacement
 /// (ghosts set; null: the mesh has none, as in a run, where its strain is small).
-/// Throws std::invalid_argument where a joint is damaged.
+/// Damaged joints: as discrete::tangent_stiffness(), what is closed sticks.
+/// \param kept_share of its intact stiffness that a damaged joint keeps, so that loose
+///                   fragments do not make the section singular; 0: nothing [-]
 SparseMatrix present_geometric_stiffness(const StaticSystem &system,
                                          const continuum::Vector *mesh_displacement,
-                                         StrainMeasure measure = StrainMeasure::biot);
+                                         StrainMeasure measure = StrainMeasure::biot,
+                                         double kept_share = 0.);
 } // namespace antiform::coupling

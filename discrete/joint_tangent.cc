@@ -1,7 +1,8 @@
 #include "discrete/joint_tangent.h"
 
-#include <cassert>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace antiform::discrete
 {
@@ -84,6 +85,60 @@ std::array<double, 3> stiffness(const Joints &joints, const std::size_t j)
   return {normal, normal / bond.stiffness_ratio,
           normal * full * full * bond.moment_factor};
 }
+/// Forces of a joint and their derivatives by gap, shear and rotation, weighted.
+struct Response
+{
+  JointTension tension;
+  double gap = 0., shear = 0.;             ///< dF/dg, dS/du_s [N/m]
+  double gap_rotation = 0., rotation = 0.; ///< dF/dtheta [N], -dM/dtheta [N m]
+};
+
+Response
+intact_response(const Joints &joints, const std::size_t j, const JointDeformation &d)
+{
+  const auto k = stiffness(joints, j);
+  return {{k[0] * d.gap, k[1] * d.shear}, k[0], k[1], 0., k[2]};
+}
+
+/// The elements' sums: what is bonded, and what is closed of the others.
+Response
+damaged_response(const Joints &joints, const std::size_t j, const JointDeformation &d)
+{
+  const auto record = static_cast<std::size_t>(joints.damage[j]);
+  Response sum;
+  if (joints.damaged.removed[record] != 0)
+    return sum;
+  const FlatJoint &law = joints.group_of(j).flat();
+  const double weight = joints.weight.empty() ? 1. : joints.weight[j];
+  const double kn = weight * joints.stiffness[j], ks = kn / law.stiffness_ratio;
+  const double R = joints.half_length[j], element = 2. * R / law.n_elements;
+  const double infinite = std::numeric_limits<double>::infinity();
+  // Faces touch where g - theta s < 0.
+  const double root = d.rotation != 0. ? d.gap / d.rotation
+                      : d.gap < 0.     ? -infinite
+                                       : infinite;
+  for (int e = 0; e < law.n_elements; ++e)
+  {
+    double a = e * element - R, b = a + element;
+    if (joints.damaged.bond(record, e) != Bond::bonded)
+    {
+      if (d.rotation < 0.)
+        b = std::clamp(root, a, b);
+      else
+        a = std::clamp(root, a, b);
+    }
+    const double length = b - a, centre = 0.5 * (a + b);
+    const double second =
+        centre * centre + (law.element_moment ? length * length / 12. : 0.);
+    sum.tension.normal += kn * length * (d.gap - d.rotation * centre);
+    sum.tension.shear += ks * length * (d.shear - joints.damaged.slip(record, e));
+    sum.gap += kn * length;
+    sum.shear += ks * length;
+    sum.gap_rotation -= kn * length * centre;
+    sum.rotation += kn * length * second;
+  }
+  return sum;
+}
 } // namespace
 
 JointTension
@@ -103,20 +158,18 @@ JointMatrix geometric_stiffness_at_rest(const Joints &joints,
 JointMatrix
 tangent_stiffness(const Grains &grains, const Joints &joints, const std::size_t j)
 {
-  assert(joints.damage[j] < 0);
   const Frame at = present_frame(grains, joints, j);
-  const auto k = stiffness(joints, j);
   const Gradients of = gradients(joints, j, at);
-  JointMatrix K =
-      geometric(joints, j, at, intact_tension(joints, j, deformation(grains, joints, j)));
+  const JointDeformation d = deformation(grains, joints, j);
+  const Response r = joints.damage[j] < 0 ? intact_response(joints, j, d)
+                                          : damaged_response(joints, j, d);
+  JointMatrix K = geometric(joints, j, at, r.tension);
+  constexpr std::array<double, 6> rotation{{0., 0., -1., 0., 0., 1.}};
   for (std::size_t a = 0; a < 6; ++a)
     for (std::size_t b = 0; b < 6; ++b)
-      K[a][b] += k[0] * of.gap[a] * of.gap[b] + k[1] * of.shear[a] * of.shear[b];
-  // theta = rotation of the second less that of the first
-  K[2][2] += k[2];
-  K[5][5] += k[2];
-  K[2][5] -= k[2];
-  K[5][2] -= k[2];
+      K[a][b] += r.gap * of.gap[a] * of.gap[b] + r.shear * of.shear[a] * of.shear[b] +
+                 r.gap_rotation * (of.gap[a] * rotation[b] + rotation[a] * of.gap[b]) +
+                 r.rotation * rotation[a] * rotation[b];
   return K;
 }
 } // namespace antiform::discrete

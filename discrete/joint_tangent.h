@@ -27,8 +27,10 @@ intact_tension(const Joints &joints, std::size_t j, const JointDeformation &d);
 JointMatrix
 geometric_stiffness_at_rest(const Joints &joints, std::size_t j, const JointTension &T);
 
-/// Tangent stiffness -df/dq of intact joint @p j at the present state of its grains, at
-/// any rotation, prestress included: the derivative of the kernel's forces. Symmetric.
-/// \pre the joint is intact
+/// Tangent stiffness -df/dq of joint @p j at the present state of its grains, at any
+/// rotation, prestress included. Intact: the derivative of the kernel's forces. Damaged:
+/// bonded elements and the closed parts of broken ones, which stick to one another; that
+/// is the derivative while nothing slides, and stiffer than a joint that goes on sliding,
+/// whose own tangent is not symmetric. Parted joints: 0. Symmetric throughout.
 JointMatrix tangent_stiffness(const Grains &grains, const Joints &joints, std::size_t j);
 } // namespace antiform::discrete

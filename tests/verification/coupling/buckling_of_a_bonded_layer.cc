@@ -208,7 +208,9 @@ TEST(BucklingOfABondedLayer, OfRandomPackingLong)
     for (std::size_t k = 0; k < 2; ++k)
       EXPECT_NEAR(found.error(k), 0., 0.02);
     if (found.grains[1].strain > 1.03 * found.grains[0].strain)
+    {
       EXPECT_EQ(found.coupled[0].half_waves, found.grains[0].half_waves);
+    }
   }
 }
 

@@ -170,8 +170,60 @@ TEST(JointTangent, OfASlidingJointIsNotSymmetric)
   K.col(1) = (force_after(0., -step) - force_after(0., step)) / (2. * step);
   const double mu = law.residual_friction;
   EXPECT_NEAR(antisymmetric_share(K), mu / std::sqrt(2. * (1. + mu * mu)), 1e-6);
+  // What is offered for it sticks: symmetric, and stiffer along the slip.
+  const auto sticks = discrete::tangent_stiffness(g, state.joints, 0);
+  EXPECT_NEAR(sticks[3][3], K(0, 0), 1e-6);
+  EXPECT_NEAR(sticks[4][4], 1. / 2.2 + K(1, 1), 1e-6);
   const StaticSystem system(state.grains, state.joints, nullptr, nullptr);
-  EXPECT_THROW(present_geometric_stiffness(system, nullptr), std::invalid_argument);
+  EXPECT_THROW(geometric_stiffness(system, {}), std::invalid_argument);
+}
+
+// Bonds left of some elements, others open, or closed and sticking over all of their
+// length: the derivative of the kernel's forces.
+TEST(JointTangent, OfADamagedJointIsThatOfWhatHolds)
+{
+  FlatJoint law = elastic_law();
+  law.breakable = true;
+  for (const double gap : {-0.05, 0.05})
+    for (const int n_broken : {1, 2, 3})
+    {
+      if (gap > 0. && n_broken == 3)
+        continue; // nothing holds
+      GrainState state;
+      state.grains.add({0., 0.}, 0.5, 1., 0);
+      state.grains.add({0.8, 0.7}, 0.55, 1., 0);
+      state.joints.begin_group(law, 0, "grains");
+      state.joints.add(state.grains, 0, 1, 1., 1.5);
+      state.joints.finish(2);
+      state.joints.weight = {0.7};
+      for (int e = 0; e < n_broken; ++e)
+        discrete::break_element(state.grains, state.joints, 0, e,
+                                discrete::Bond::broken_in_tension);
+      discrete::Grains &g = state.grains;
+      const Vec2 n{state.joints.normal_x[0], state.joints.normal_y[0]};
+      // Rotations of 0.01 keep each face wholly open or closed; shear below friction.
+      g.displacement_x[1] = gap * n.x - 0.003 * n.y;
+      g.displacement_y[1] = gap * n.y + 0.003 * n.x;
+      g.rotation = {0.004, 0.010};
+      kernel_forces(state);
+      const GrainState here = state;
+      const double step = 1e-6;
+      Eigen::MatrixXd found(6, 6), tangent(6, 6);
+      for (Eigen::Index k = 0; k < 6; ++k)
+      {
+        GrainState forward = here, backward = here; // slips are those of here
+        unknown(forward.grains, k) += step;
+        unknown(backward.grains, k) -= step;
+        found.col(k) = (kernel_forces(backward) - kernel_forces(forward)) / (2. * step);
+      }
+      const auto K = discrete::tangent_stiffness(here.grains, here.joints, 0);
+      for (Eigen::Index a = 0; a < 6; ++a)
+        for (Eigen::Index b = 0; b < 6; ++b)
+          tangent(a, b) = K[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
+      EXPECT_LT((tangent - found).norm(), 1e-6 * found.norm())
+          << "gap " << gap << ", " << n_broken << " broken";
+      EXPECT_LT(antisymmetric_share(tangent), 1e-15);
+    }
 }
 
 namespace
