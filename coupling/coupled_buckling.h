@@ -25,12 +25,13 @@ struct CoupledBucklingOptions
 
 /// Lowest positive load factors of (K + factor G) u = 0 on the displacements that keep
 /// the bridging constraint C u = 0 and the supports of @p system, and their shapes.
-/// Saddle-point solves (MUMPS) inside Krylov-Schur (Anasazi), in the inner product of K:
-/// first a few steps of Lanczos on -K^-1 G, then shifted to just below the lowest. The
-/// inertia of one more factor proves that none below the highest was missed. \param
-/// geometric G at factor 1, symmetric; coupling/geometric_stiffness.h \return ascending,
-/// at most n_modes Throws NumericalError where K is singular, where nothing converges or
-/// a lower mode is missing, and where no factor above 0 exists.
+/// Krylov-Schur (Anasazi) on saddle-point solves (MUMPS), shifted to just below the
+/// lowest load, in the inner product of K; a few steps of Lanczos on -K^-1 G tell where
+/// that is. The inertia of one more factor proves that no lower one was missed.
+/// \param geometric G at factor 1, symmetric: geometric_stiffness()
+/// \return ascending, at most n_modes
+/// Throws NumericalError where K is singular, where nothing converges, where a lower mode
+/// is missing, and where no factor above 0 exists.
 std::vector<CoupledMode> lowest_coupled_modes(const StaticSystem &system,
                                               const SparseMatrix &geometric,
                                               const CoupledBucklingOptions &options = {});
