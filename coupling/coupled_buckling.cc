@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 namespace antiform::coupling
 {
@@ -204,7 +205,17 @@ std::vector<EigenPair> largest(const Map &map,
   settings.set("Verbosity", 0);
   Anasazi::BlockKrylovSchurSolMgr<double, Epetra_MultiVector, Epetra_Operator> solver(
       problem, settings);
-  solver.solve(); // what has converged of it counts
+  try
+  {
+    solver.solve(); // what has converged of it counts
+  }
+  catch (const std::logic_error &) // Anasazi: a basis that cannot be made orthogonal
+  {
+    throw NumericalError("linear buckling",
+                         "the eigenvectors cannot be made orthogonal: the section is "
+                         "nearly loose. Loads wanted",
+                         wanted, 0.);
+  }
   const auto &solution = problem->getSolution();
   if (solution.numVecs == 0)
     throw NumericalError("linear buckling",

@@ -304,8 +304,7 @@ StaticSolution StaticSystem::solve() const
 {
   const SaddlePoint parts = saddle_point();
   const auto n_primal = static_cast<std::size_t>(parts.stiffness.rows());
-  const std::size_t n =
-      n_primal + static_cast<std::size_t>(parts.constraint.rows());
+  const std::size_t n = n_primal + static_cast<std::size_t>(parts.constraint.rows());
   Triplets all;
   for (Eigen::Index row = 0; row < parts.stiffness.rows(); ++row)
     for (Matrix::InnerIterator it(parts.stiffness, row); it; ++it)

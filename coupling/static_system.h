@@ -25,9 +25,10 @@ struct StaticSolution
 /// c of grain i (x, y, rotation); the dofs of the mesh follow.
 struct SaddlePoint
 {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> stiffness;  ///< springs included
-  Eigen::SparseMatrix<double, Eigen::RowMajor> constraint; ///< C, scaled; may have no rows
-  double diagonal = 0.;                                    ///< mean of the stiffness'
+  using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  Matrix stiffness;     ///< springs included
+  Matrix constraint;    ///< C, scaled; may have no rows
+  double diagonal = 0.; ///< mean of the stiffness'
 };
 
 /// Linear static equilibrium of intact bonded grains, mesh and bridging domain: the
