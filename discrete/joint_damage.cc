@@ -161,6 +161,21 @@ double fracture_energy(const double drop,
 }
 } // namespace
 
+BondedElement bonded_element(const Joints &joints,
+                             const std::size_t j,
+                             const int e,
+                             const JointDeformation &d)
+{
+  const ElementLaw<double> law = element_law(joints, j, joints.group_of(j).flat(), true);
+  const Stretch<double> place = element(law, e);
+  // A bonded element has no slip.
+  const MeanStress stress =
+      bonded_stress(law, place, 0., seen_by_law(d.gap, d.shear, d.rotation));
+  return {stress.normal, stress.shear,     law.tensile_strength,
+          law.cohesion,  law.tan_friction, place.a,
+          place.b};
+}
+
 std::size_t add_damaged(Joints &joints, const std::size_t joint)
 {
   const std::size_t g = joints.group_number(joint);
@@ -273,8 +288,10 @@ void break_element(const Grains &grains,
   const std::size_t k = joints.damage[joint];
   evaluate_damaged(grains, joints, damaged, k, now, {}, nullptr);
   const double before = strain_energy(joints, damaged, k);
+  const double rubbed = damaged.slip_energy[k];
   damaged.set_bond(k, element, mode);
   evaluate_damaged(grains, joints, damaged, k, now, {}, nullptr);
+  damaged.slip_energy[k] = rubbed; // what slips at the break is in the fracture energy
   damaged.fracture_energy[k] += before - strain_energy(joints, damaged, k);
 }
 } // namespace antiform::discrete

@@ -20,6 +20,21 @@ void evaluate_damaged(const Grains &grains,
                       const StepTime &time,
                       std::vector<Crack> *cracks);
 
+/// What a bonded element of a flat joint carries, and what it could.
+struct BondedElement
+{
+  double normal = 0., shear = 0.; ///< mean stresses, tension positive [Pa]
+  double tensile_strength = 0., cohesion = 0.; ///< of this joint [Pa]
+  double tan_friction = 0.;
+  double a = 0., b = 0.; ///< its place along the joint's tangent, from the centre [m]
+};
+/// Element @p e of breakable flat joint @p j, bonded, at the deformation @p d: the
+/// stresses that the law compares with the strengths.
+BondedElement bonded_element(const Joints &joints,
+                             std::size_t j,
+                             int e,
+                             const JointDeformation &d);
+
 /// Record of intact joint @p joint, which is about to lose its first bond.
 /// \return its number
 std::size_t add_damaged(Joints &joints, std::size_t joint);

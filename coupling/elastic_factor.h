@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include <memory>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// Cholesky factor (CHOLMOD, supernodal, nested or minimum-degree order) of a symmetric
+/// positive definite matrix, for many solves. One rank, one thread.
+class ElasticFactor
+{
+public:
+  /// \param matrix n x n, both triangles or the lower one alone. Throws NumericalError
+  ///               where a pivot is not positive: a part of the body can move without
+  ///               resistance.
+  explicit ElasticFactor(const Eigen::SparseMatrix<double> &matrix);
+  ~ElasticFactor();
+  ElasticFactor(ElasticFactor &&) noexcept;
+  ElasticFactor &operator=(ElasticFactor &&) noexcept;
+
+  /// x = A^-1 b, n entries.
+  Eigen::VectorXd solve(const Eigen::VectorXd &right) const;
+  Eigen::Index size() const;
+
+private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+} // namespace antiform::coupling

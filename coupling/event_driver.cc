@@ -1,0 +1,214 @@
+#include "coupling/event_driver.h"
+
+#include "discrete/joint_events.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace antiform::coupling
+{
+EventDriver::EventDriver(GrainState &state,
+                         BalanceOperator &body,
+                         HandOver dynamics,
+                         const DriverSettings &settings)
+    : state_(state)
+    , body_(body)
+    , dynamics_(std::move(dynamics))
+    , settings_(settings)
+    , anderson_(static_cast<std::size_t>(settings.anderson_depth))
+{
+  const std::vector<double> &radius = state.grains.radius;
+  const auto n = static_cast<double>(radius.size());
+  mean_diameter_ = 2. * std::accumulate(radius.begin(), radius.end(), 0.) / n;
+  if (settings_.events_per_step == 0)
+    settings_.events_per_step = std::max(1, static_cast<int>(std::lround(n / 300.)));
+  report_.solves = 1; // the tangent's, which does not change
+}
+
+EventDriver::EventDriver(GrainBalance &body, const DriverSettings &settings)
+    : EventDriver(
+          body.state(),
+          body,
+          [&body, dynamics = settings.dynamics](const double mean, const double largest)
+          { return settle(body, dynamics, mean, largest); },
+          settings)
+{
+}
+
+bool EventDriver::run_to(const double target)
+{
+  while (true)
+  {
+    balance();
+    add_record();
+    if (settings_.stop_drop > 0. &&
+        report_.records.back().force < (1. - settings_.stop_drop) * largest_force_)
+      return false;
+    if (load_ == target)
+      return true;
+    step_towards(target);
+  }
+}
+
+/// At the present load: break and correct by turns until nothing is left to do.
+void EventDriver::balance()
+{
+  const double most_breaks =
+      settings_.most_breaks * static_cast<double>(state_.grains.size());
+  int corrections = 0;
+  std::int64_t breaks = report_.breaks;
+  double held = held_;
+  anderson_.reset();
+  evaluate();
+  while (true)
+  {
+    if (!is_balanced())
+    {
+      if (corrections == settings_.most_corrections)
+        return hand_over();
+      correct(corrections++);
+      report_.most_corrections =
+          std::max<std::int64_t>(report_.most_corrections, corrections);
+      continue;
+    }
+    if (report_.breaks > breaks)
+      report_.least_held = std::min(report_.least_held, held_ - held);
+    const std::vector<discrete::LoadedElement> over =
+        discrete::overstressed_elements(state_.grains, state_.joints);
+    if (over.empty())
+      return;
+    held = held_;
+    break_batch(over);
+    corrections = 0;
+    if (static_cast<double>(report_.breaks - breaks) > most_breaks)
+      return hand_over();
+  }
+}
+
+void EventDriver::break_batch(const std::vector<discrete::LoadedElement> &over)
+{
+  const std::vector<discrete::LoadedElement> batch =
+      discrete::local_maxima(over, settings_.exclusion * mean_diameter_);
+  discrete::StepTime now;
+  now.step = static_cast<std::uint64_t>(report_.load_steps);
+  now.time = load_;
+  discrete::break_elements(state_.grains, state_.joints, batch, now, state_.cracks);
+  ++report_.batches;
+  report_.breaks += static_cast<std::int64_t>(batch.size());
+  anderson_.reset();
+  evaluate();
+}
+
+void EventDriver::correct(const int corrections)
+{
+  Eigen::VectorXd step = body_.solve(unbalanced_);
+  ++report_.solves;
+  if (corrections >= settings_.accelerate_after)
+  {
+    const Eigen::VectorXd &levers = body_.levers();
+    step = anderson_.increment(step.cwiseProduct(levers)).cwiseQuotient(levers);
+  }
+  const double share = body_.allowed_share(step, settings_.correction_cap);
+  if (share < 1.)
+    anderson_.reset();
+  move(share * step, 0.);
+}
+
+void EventDriver::hand_over()
+{
+  evaluate();
+  const bool past = body_.conjugate_force() < (1. - settings_.past_peak) * largest_force_;
+  const HeldResult result =
+      dynamics_(past ? settings_.settled_after_peak : settings_.settled_before_peak,
+                settings_.largest_limit);
+  ++report_.hand_overs;
+  report_.explicit_steps += result.steps;
+  held_ += result.dissipated;
+  work_ += result.load_work;
+  evaluate();
+}
+
+void EventDriver::step_towards(const double target)
+{
+  const double sign = target > load_ ? 1. : -1.;
+  const double left = std::abs(target - load_), size = step_size(sign);
+  ++report_.load_steps;
+  move(sign * std::min(size, left) * body_.tangent(), sign * std::min(size, left));
+  if (size >= left)
+    load_ = target;
+}
+
+/// To the k-th event of the linearised body, at most the largest step.
+double EventDriver::step_size(const double sign)
+{
+  discrete::Grains &grains = state_.grains;
+  const Eigen::VectorXd &rate = body_.tangent();
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const auto first = static_cast<Eigen::Index>(3 * i);
+    grains.velocity_x[i] = rate[first];
+    grains.velocity_y[i] = rate[first + 1];
+    grains.spin[i] = rate[first + 2];
+  }
+  std::vector<double> steps =
+      discrete::steps_to_break(grains, state_.joints, sign * settings_.largest_step);
+  for (std::vector<double> *v : {&grains.velocity_x, &grains.velocity_y, &grains.spin})
+    std::fill(v->begin(), v->end(), 0.);
+
+  // A little beyond: rounding must not leave the event just ahead for ever.
+  const double beyond = 1e-7 * std::max(std::abs(load_), settings_.largest_step);
+  double size = settings_.largest_step;
+  const auto k = static_cast<std::size_t>(settings_.events_per_step);
+  if (steps.size() >= k)
+  {
+    const auto wanted = steps.begin() + static_cast<std::ptrdiff_t>(k - 1);
+    std::nth_element(steps.begin(), wanted, steps.end());
+    size = std::min(size, *wanted + beyond);
+  }
+  return size;
+}
+
+/// Displace the body and book the work of its supports, of its loads, and of what holds
+/// it back from moving by itself, each by the trapezoidal rule.
+void EventDriver::move(const Eigen::VectorXd &increment, const double load_step)
+{
+  const Eigen::VectorXd before = unbalanced_;
+  const double force = body_.conjugate_force();
+  body_.move(increment);
+  load_ += load_step;
+  evaluate();
+  held_ += 0.5 * (before + unbalanced_).dot(increment);
+  work_ +=
+      0.5 * (force + body_.conjugate_force()) * load_step + body_.load_work(increment);
+}
+
+void EventDriver::evaluate()
+{
+  unbalanced_ = body_.residual();
+  ++report_.evaluations;
+}
+
+bool EventDriver::is_balanced() const
+{
+  return body_.ratios().within(settings_.mean_limit, settings_.largest_limit);
+}
+
+void EventDriver::add_record()
+{
+  LoadRecord record;
+  record.load = load_;
+  record.force = body_.conjugate_force();
+  record.cracks = state_.cracks.size();
+  record.ratios = body_.ratios();
+  const discrete::JointEnergies joints =
+      discrete::joint_energies(state_.grains, state_.joints);
+  record.energies.boundary_work = work_;
+  record.energies.strain_grains = joints.strain;
+  record.energies.slip = joints.slip;
+  record.energies.fracture = joints.fracture;
+  record.energies.damping = held_;
+  report_.records.push_back(record);
+  largest_force_ = std::max(largest_force_, record.force);
+}
+} // namespace antiform::coupling

@@ -1,0 +1,216 @@
+#include "coupling/grain_balance.h"
+
+#include "coupling/static_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace antiform::coupling
+{
+namespace
+{
+using discrete::Grains;
+using discrete::Joints;
+
+Eigen::Index index(const std::size_t grain, const unsigned int component)
+{
+  return static_cast<Eigen::Index>(3 * grain + component);
+}
+} // namespace
+
+GrainBalance::GrainBalance(GrainState &state,
+                           const std::vector<PrescribedMotion> &prescribed,
+                           std::vector<GrainLoad> loads)
+    : state_(state)
+    , loads_(std::move(loads))
+{
+  const Grains &grains = state.grains;
+  const auto n = static_cast<Eigen::Index>(3 * grains.size());
+  prescribed_ = rate_ = residual_ = support_ = Eigen::VectorXd::Zero(n);
+  levers_ = Eigen::VectorXd::Ones(n);
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    levers_[index(i, 2)] = grains.radius[i];
+    if (state.joints.grain_begin[i] == state.joints.grain_begin[i + 1])
+      prescribed_.segment<3>(index(i, 0)).setOnes();
+  }
+  for (const GrainLoad &load : loads_)
+    if (prescribed_[index(load.grain, 0)] > 0.)
+      throw std::invalid_argument("grain " + std::to_string(load.grain) +
+                                  " carries a load but no joint: nothing balances it");
+  for (const PrescribedMotion &motion : prescribed)
+  {
+    prescribed_[index(motion.grain, motion.component)] = 1.;
+    rate_[index(motion.grain, motion.component)] = motion.rate;
+  }
+  assemble();
+}
+
+void GrainBalance::assemble()
+{
+  const Joints &joints = state_.joints;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(22 * joints.size());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n_unknowns());
+  for (std::size_t j = 0; j < joints.size(); ++j)
+  {
+    const auto rows = joint_rows(joints, j);
+    const auto stiffness = joint_stiffness(joints, j);
+    for (unsigned int a = 0; a < 6; ++a)
+      for (unsigned int b = 0; b < 6; ++b)
+      {
+        double value = 0.;
+        for (unsigned int r = 0; r < 3; ++r)
+          value += rows[r][a] * stiffness[r] * rows[r][b];
+        const Eigen::Index row = index(a < 3 ? joints.first[j] : joints.second[j], a % 3);
+        const Eigen::Index column =
+            index(b < 3 ? joints.first[j] : joints.second[j], b % 3);
+        if (prescribed_[row] > 0.)
+          continue;
+        if (prescribed_[column] > 0.)
+          right[row] -= value * rate_[column];
+        else if (row >= column)
+          entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+      }
+  }
+  for (Eigen::Index i = 0; i < n_unknowns(); ++i)
+    if (prescribed_[i] > 0.)
+      entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.);
+  Eigen::SparseMatrix<double> matrix(n_unknowns(), n_unknowns());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor_.emplace(matrix);
+  tangent_ = solve(right) + rate_;
+}
+
+void GrainBalance::add_forces(const discrete::StepTime &now,
+                              std::vector<discrete::Crack> *cracks,
+                              const bool keep_forces)
+{
+  Grains &grains = state_.grains;
+  compute_joint_forces(grains, state_.joints, now, cracks, keep_forces);
+  for (const GrainLoad &load : loads_)
+  {
+    grains.force_x[load.grain] += load.force.x;
+    grains.force_y[load.grain] += load.force.y;
+    grains.torque[load.grain] += load.torque;
+  }
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    double *const force[3] = {&grains.force_x[i], &grains.force_y[i], &grains.torque[i]};
+    for (unsigned int c = 0; c < 3; ++c)
+      if (prescribed_[index(i, c)] > 0.)
+      {
+        support_[index(i, c)] = -*force[c];
+        *force[c] = 0.;
+      }
+  }
+}
+
+const Eigen::VectorXd &GrainBalance::residual()
+{
+  add_forces({}, nullptr, true);
+  const Grains &grains = state_.grains;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    residual_.segment<3>(index(i, 0)) << grains.force_x[i], grains.force_y[i],
+        grains.torque[i];
+  return residual_;
+}
+
+BalanceRatios GrainBalance::ratios() const
+{
+  const Grains &grains = state_.grains;
+  double sum = 0., largest = 0., n_free = 0.;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const double force[3] = {grains.force_x[i], grains.force_y[i],
+                             grains.torque[i] / grains.radius[i]};
+    for (unsigned int c = 0; c < 3; ++c)
+      if (prescribed_[index(i, c)] == 0.)
+      {
+        sum += std::abs(force[c]);
+        largest = std::max(largest, std::abs(force[c]));
+        n_free += 1.;
+      }
+  }
+  double carried = 0.;
+  for (const discrete::JointForce &force : state_.joints.force)
+    carried += std::hypot(force.x, force.y);
+  carried /= static_cast<double>(state_.joints.size());
+  if (largest == 0.)
+    return {};
+  return {sum / std::max(1., n_free) / carried, largest / carried};
+}
+
+double GrainBalance::conjugate_force() const
+{
+  return support_.dot(rate_);
+}
+
+Eigen::VectorXd GrainBalance::solve(const Eigen::VectorXd &r) const
+{
+  return factor_->solve((prescribed_.array() > 0.).select(0., r));
+}
+
+void GrainBalance::move(const Eigen::VectorXd &increment)
+{
+  Grains &grains = state_.grains;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    grains.displacement_x[i] += increment[index(i, 0)];
+    grains.displacement_y[i] += increment[index(i, 1)];
+    grains.rotation[i] += increment[index(i, 2)];
+  }
+}
+
+double GrainBalance::load_work(const Eigen::VectorXd &increment) const
+{
+  double work = 0.;
+  for (const GrainLoad &load : loads_)
+    work += increment.segment<3>(index(load.grain, 0))
+                .dot(Eigen::Vector3d(load.force.x, load.force.y, load.torque));
+  return work;
+}
+
+double GrainBalance::load_potential() const
+{
+  const Grains &grains = state_.grains;
+  double work = 0.;
+  for (const GrainLoad &load : loads_)
+    work += load.force.x * grains.displacement_x[load.grain] +
+            load.force.y * grains.displacement_y[load.grain] +
+            load.torque * grains.rotation[load.grain];
+  return work;
+}
+
+double GrainBalance::allowed_share(const Eigen::VectorXd &correction,
+                                   const double cap) const
+{
+  const Joints &joints = state_.joints;
+  double worst = 0.; // deformation over sigma_b / k_n
+  for (const discrete::JointGroup &group : joints.groups)
+  {
+    const discrete::BondConstants law = discrete::constants(group.law);
+    if (!law.breakable || !(law.tensile_strength > 0.))
+      continue;
+    for (std::size_t j = group.begin; j < group.end; ++j)
+    {
+      const auto rows = joint_rows(joints, j);
+      double d[3]; // gap, shear, rotation
+      for (unsigned int r = 0; r < 3; ++r)
+      {
+        d[r] = 0.;
+        for (unsigned int a = 0; a < 6; ++a)
+          d[r] += rows[r][a] *
+                  correction[index(a < 3 ? joints.first[j] : joints.second[j], a % 3)];
+      }
+      const double deformation =
+          std::hypot(d[0], d[1]) + joints.half_length[j] * std::abs(d[2]);
+      worst = std::max(worst, deformation * joints.stiffness[j] / law.tensile_strength);
+    }
+  }
+  return worst > cap ? cap / worst : 1.;
+}
+} // namespace antiform::coupling

@@ -1,0 +1,116 @@
+#pragma once
+
+#include "coupling/elastic_factor.h"
+#include "coupling/grain_components.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// How far a body is from balance: unbalanced forces on free degrees of freedom over the
+/// mean force of a joint. Torques count as forces at the rim of their grain.
+struct BalanceRatios
+{
+  double mean = 0.;    ///< of the mean [-]
+  double largest = 0.; ///< of the largest [-]
+  bool within(const double mean_limit, const double largest_limit) const
+  {
+    return mean < mean_limit && largest < largest_limit;
+  }
+};
+
+/// What a quasi-static driver needs of a body: the exact unbalanced force at the present
+/// state, and a symmetric elastic operator, no softer than the body, to correct it with.
+/// The vectors have an entry for each of its unknowns, prescribed ones included; what
+/// they mean is the body's business. A body of grains, mesh and bridging domain has its
+/// saddle point inside solve().
+class BalanceOperator
+{
+public:
+  virtual ~BalanceOperator() = default;
+
+  virtual Eigen::Index n_unknowns() const = 0;
+  /// Unbalanced force [N], [N m]: external minus internal, 0 where motion is prescribed.
+  /// History (slip) is committed; no bond is tested.
+  virtual const Eigen::VectorXd &residual() = 0;
+  /// Of the last residual().
+  virtual BalanceRatios ratios() const = 0;
+  /// Force conjugate to the load parameter, that is, the work per unit of it that the
+  /// prescribed motion does at the last residual() [J].
+  virtual double conjugate_force() const = 0;
+  /// Correction for the unbalanced force @p r; 0 where motion is prescribed.
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd &r) const = 0;
+  /// Motion per unit of the load parameter: prescribed, and what follows elastically.
+  virtual const Eigen::VectorXd &tangent() const = 0;
+  /// Add @p increment to the displacements.
+  virtual void move(const Eigen::VectorXd &increment) = 0;
+  /// Work of the constant loads in such a move [J].
+  virtual double load_work(const Eigen::VectorXd &increment) const = 0;
+  /// Share of @p correction, at most 1, that deforms no joint beyond the cap.
+  virtual double allowed_share(const Eigen::VectorXd &correction, double cap) const = 0;
+  /// Lengths that turn the unknowns into displacements: 1, or radii of grains [m].
+  virtual const Eigen::VectorXd &levers() const = 0;
+};
+
+/// A prescribed displacement (component 0, 1) or rotation (2) of a grain.
+struct PrescribedMotion
+{
+  std::int32_t grain = 0;
+  unsigned int component = 0;
+  double rate = 0.; ///< per unit of the load parameter [m] or [rad]; 0: held
+};
+
+/// Bonded grains in balance. Unknown 3 i + c is component c of grain i. The operator is
+/// the stiffness of the material as it was made, all bonds whole, weighted as the joints
+/// are: an upper bound of the damaged one, friction included, so that each correction
+/// descends.
+class GrainBalance : public BalanceOperator
+{
+public:
+  /// \param state      referred to; no joint of a brittle law, no prestress loads but
+  ///                   those in @p loads
+  /// \param loads      constant (dead) loads on grains
+  /// Grains without any joint are held. Throws NumericalError when the operator is
+  /// singular, std::invalid_argument for a load on a grain without joints.
+  GrainBalance(GrainState &state,
+               const std::vector<PrescribedMotion> &prescribed,
+               std::vector<GrainLoad> loads = {});
+
+  Eigen::Index n_unknowns() const override { return prescribed_.size(); }
+  const Eigen::VectorXd &residual() override;
+  BalanceRatios ratios() const override;
+  double conjugate_force() const override;
+  Eigen::VectorXd solve(const Eigen::VectorXd &r) const override;
+  const Eigen::VectorXd &tangent() const override { return tangent_; }
+  void move(const Eigen::VectorXd &increment) override;
+  double load_work(const Eigen::VectorXd &increment) const override;
+  double allowed_share(const Eigen::VectorXd &correction, double cap) const override;
+  const Eigen::VectorXd &levers() const override { return levers_; }
+
+  /// Forces of joints and loads at the present displacements, into the grains; what acts
+  /// on prescribed components is taken off them: it is the supports'.
+  /// \param cracks      bonds break and are appended; null: none is tested
+  /// \param keep_forces of joints, for ratios()
+  void add_forces(const discrete::StepTime &now,
+                  std::vector<discrete::Crack> *cracks,
+                  bool keep_forces);
+  /// Work of the constant loads from the reference to the present place [J].
+  double load_potential() const;
+
+  GrainState &state() { return state_; }
+  const GrainState &state() const { return state_; }
+
+private:
+  void assemble();
+
+  GrainState &state_;
+  std::vector<GrainLoad> loads_;
+  Eigen::VectorXd prescribed_; ///< 1 where motion is prescribed, else 0
+  Eigen::VectorXd rate_, levers_, residual_, support_, tangent_;
+  std::optional<ElasticFactor> factor_;
+};
+} // namespace antiform::coupling

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "coupling/grain_balance.h"
+
+#include <cstdint>
+
+namespace antiform::coupling
+{
+/// Explicit damped motion of grains whose supports are held.
+struct HeldDynamics
+{
+  double damping = 0.7; ///< local [-]
+  double step_safety = 0.8;
+  int check_interval = 20;            ///< steps between two looks at the ratios
+  std::int64_t most_steps = 10000000; ///< before it is given up
+};
+
+/// What came of it.
+struct HeldResult
+{
+  std::int64_t steps = 0;
+  double dissipated = 0.; ///< by the damping, and what was kinetic at the end [J]
+  double load_work = 0.;  ///< of the constant loads [J]
+};
+
+/// Let the grains go from rest, prescribed components held, bonds breaking, until the
+/// body is in balance within the limits; stop them there. Densities are scaled so that
+/// every grain has the same stable step, and put back afterwards. Cracks go to the state;
+/// their step and time are those of this motion, in units in which the stiffest grain's
+/// own period is of order 1. Throws NumericalError after the most steps.
+HeldResult settle(GrainBalance &body,
+                  const HeldDynamics &settings,
+                  double mean_limit,
+                  double largest_limit);
+} // namespace antiform::coupling
