@@ -30,8 +30,8 @@ EventDriver::EventDriver(GrainBalance &body, const DriverSettings &settings)
     : EventDriver(
           body.state(),
           body,
-          [&body, dynamics = settings.dynamics](const double mean, const double largest)
-          { return settle(body, dynamics, mean, largest); },
+          [&body, dynamics = settings.dynamics](const BalanceRatios &limits)
+          { return settle(body, dynamics, limits); },
           settings)
 {
 }
@@ -119,9 +119,9 @@ void EventDriver::hand_over()
 {
   evaluate();
   const bool past = body_.conjugate_force() < (1. - settings_.past_peak) * largest_force_;
-  const HeldResult result =
-      dynamics_(past ? settings_.settled_after_peak : settings_.settled_before_peak,
-                settings_.largest_limit);
+  BalanceRatios limits = settings_.limits;
+  limits.mean = past ? settings_.settled_after_peak : settings_.settled_before_peak;
+  const HeldResult result = dynamics_(limits);
   ++report_.hand_overs;
   report_.explicit_steps += result.steps;
   held_ += result.dissipated;
@@ -191,7 +191,7 @@ void EventDriver::evaluate()
 
 bool EventDriver::is_balanced() const
 {
-  return body_.ratios().within(settings_.mean_limit, settings_.largest_limit);
+  return body_.ratios().within(settings_.limits);
 }
 
 void EventDriver::add_record()

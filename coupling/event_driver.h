@@ -18,14 +18,15 @@ namespace antiform::coupling
 /// How a body is loaded through its events (docs/theory/quasi_static_driver.md).
 struct DriverSettings
 {
-  double mean_limit = 1e-3;    ///< of balance: mean unbalanced force [-]
-  double largest_limit = 0.1;  ///< and the largest; a mean does not see one break [-]
+  /// Of balance. The mean does not see a single break among many grains, nor the largest
+  /// one where joints carry much more than their tensile strength.
+  BalanceRatios limits{1e-3, 0.1, 0.15};
   double largest_step = 1e-4;  ///< of the load parameter
   int events_per_step = 0;     ///< k: a load step reaches that many; 0: N / 300
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
 
-  int accelerate_after = 50; ///< corrections since the last break or load step
+  int accelerate_after = 5;  ///< corrections since the last break or load step
   int anderson_depth = 6;
   int most_corrections = 400;        ///< then the body is handed over to explicit motion
   double most_breaks = 0.125;        ///< at one load, per grain: likewise
@@ -63,9 +64,8 @@ struct DriverReport
   std::vector<LoadRecord> records;
 };
 
-/// Explicit motion under held supports until the mean and the largest ratio are below the
-/// limits given.
-using HandOver = std::function<HeldResult(double mean_limit, double largest_limit)>;
+/// Explicit motion under held supports until the body is in balance within limits.
+using HandOver = std::function<HeldResult(const BalanceRatios &limits)>;
 
 /// Loads bonded grains without inertia: to the next few events; then, at that load, break
 /// the most loaded bond of each neighbourhood, restore balance, and again until no bond

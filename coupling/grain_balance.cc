@@ -15,6 +15,24 @@ namespace
 using discrete::Grains;
 using discrete::Joints;
 
+/// Tensile force at which an element breaks, in the mean of the breakable joints [N].
+double mean_element_strength(const Joints &joints)
+{
+  double sum = 0.;
+  std::size_t n = 0;
+  for (const discrete::JointGroup &group : joints.groups)
+  {
+    const discrete::BondConstants law = discrete::constants(group.law);
+    if (!law.breakable)
+      continue;
+    n += group.end - group.begin;
+    for (std::size_t j = group.begin; j < group.end; ++j)
+      sum += law.tensile_strength * 2. * joints.half_length[j] / law.n_elements *
+             (joints.weight.empty() ? 1. : joints.weight[j]);
+  }
+  return n > 0 ? sum / static_cast<double>(n) : 0.;
+}
+
 Eigen::Index index(const std::size_t grain, const unsigned int component)
 {
   return static_cast<Eigen::Index>(3 * grain + component);
@@ -31,6 +49,7 @@ GrainBalance::GrainBalance(GrainState &state,
   const auto n = static_cast<Eigen::Index>(3 * grains.size());
   prescribed_ = rate_ = residual_ = support_ = Eigen::VectorXd::Zero(n);
   levers_ = Eigen::VectorXd::Ones(n);
+  element_strength_ = mean_element_strength(state.joints);
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
     levers_[index(i, 2)] = grains.radius[i];
@@ -141,7 +160,8 @@ BalanceRatios GrainBalance::ratios() const
   carried /= static_cast<double>(state_.joints.size());
   if (largest == 0.)
     return {};
-  return {sum / std::max(1., n_free) / carried, largest / carried};
+  return {sum / std::max(1., n_free) / carried, largest / carried,
+          element_strength_ > 0. ? largest / element_strength_ : 0.};
 }
 
 double GrainBalance::conjugate_force() const

@@ -11,15 +11,18 @@
 
 namespace antiform::coupling
 {
-/// How far a body is from balance: unbalanced forces on free degrees of freedom over the
-/// mean force of a joint. Torques count as forces at the rim of their grain.
+/// How far a body is from balance, by the unbalanced forces on its free degrees of
+/// freedom. Torques count as forces at the rim of their grain.
 struct BalanceRatios
 {
-  double mean = 0.;    ///< of the mean [-]
-  double largest = 0.; ///< of the largest [-]
-  bool within(const double mean_limit, const double largest_limit) const
+  double mean = 0.;        ///< their mean over the mean force of a joint [-]
+  double largest = 0.;     ///< their largest over the same [-]
+  double of_strength = 0.; ///< their largest over what an element carries when it breaks
+                           ///< in tension, in the mean of the breakable joints [-]
+  bool within(const BalanceRatios &limits) const
   {
-    return mean < mean_limit && largest < largest_limit;
+    return mean < limits.mean && largest < limits.largest &&
+           of_strength < limits.of_strength;
   }
 };
 
@@ -109,7 +112,8 @@ private:
 
   GrainState &state_;
   std::vector<GrainLoad> loads_;
-  Eigen::VectorXd prescribed_; ///< 1 where motion is prescribed, else 0
+  Eigen::VectorXd prescribed_;   ///< 1 where motion is prescribed, else 0
+  double element_strength_ = 0.; ///< mean, weighted; 0: nothing breaks [N]
   Eigen::VectorXd rate_, levers_, residual_, support_, tangent_;
   std::optional<ElasticFactor> factor_;
 };

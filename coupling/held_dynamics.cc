@@ -30,10 +30,8 @@ double common_step(const Grains &grains, const discrete::StiffnessSums &sums)
 }
 } // namespace
 
-HeldResult settle(GrainBalance &body,
-                  const HeldDynamics &settings,
-                  const double mean_limit,
-                  const double largest_limit)
+HeldResult
+settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits)
 {
   Grains &grains = body.state().grains;
   discrete::Joints &joints = body.state().joints;
@@ -61,7 +59,7 @@ HeldResult settle(GrainBalance &body,
     const discrete::GrainVelocities before =
         look ? discrete::velocities(grains) : discrete::GrainVelocities{};
     discrete::damped_kick(grains, dt, damping);
-    if (look && ratios.within(mean_limit, largest_limit))
+    if (look && ratios.within(limits))
     {
       result.dissipated = discrete::kinetic_energy(grains, before);
       break;
@@ -69,7 +67,7 @@ HeldResult settle(GrainBalance &body,
     if (result.steps >= settings.most_steps)
       throw NumericalError("held dynamics",
                            "the body does not come to rest under held supports",
-                           ratios.mean, mean_limit, static_cast<long>(result.steps));
+                           ratios.mean, limits.mean, static_cast<long>(result.steps));
     discrete::drift(grains, dt);
     ++result.steps;
   }

@@ -28,8 +28,6 @@ struct HeldResult
 /// every grain has the same stable step, and put back afterwards. Cracks go to the state;
 /// their step and time are those of this motion, in units in which the stiffest grain's
 /// own period is of order 1. Throws NumericalError after the most steps.
-HeldResult settle(GrainBalance &body,
-                  const HeldDynamics &settings,
-                  double mean_limit,
-                  double largest_limit);
+HeldResult
+settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits);
 } // namespace antiform::coupling
