@@ -1,5 +1,6 @@
 #include "coupling/surface_contact.h"
 
+#include "continuum/errors.h"
 #include "continuum/require.h"
 
 #include <algorithm>
@@ -43,6 +44,10 @@ SurfaceContact::SurfaceContact(SurfaceInterface interface,
   {
     const Vec2 along = interface_.edge().tangent(point.place, nullptr);
     const Vec2 normal = (-1. / norm(along)) * perpendicular(along);
+    require(point.distance > 0.,
+            "surface interface: the distance of a grain's centre from the edge",
+            point.distance, "m",
+            "> 0 where they are in contact: move the edge out of the layer");
     State state;
     state.place = point.place;
     state.normal = normal;
@@ -120,6 +125,11 @@ void SurfaceContact::add_forces(discrete::Grains &grains,
     const EdgeCurve::Nearest seen =
         interface_.edge().nearest(grains.position(point.grain), u, state.place);
     const State before = state;
+    if (dot(before.normal, seen.normal) < 0.)
+      throw NumericalError("surface interface",
+                           "a grain has gone through the mesh's edge: take a stiffer "
+                           "contact; its opening over its distance",
+                           state.gap.opening / point.distance, -1.);
     state.place = seen.place;
     state.normal = seen.normal;
     state.gap.opening = seen.distance - point.distance;

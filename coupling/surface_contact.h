@@ -28,7 +28,8 @@ public:
   using InitialTraction = std::function<Vec2(const Vec2 &place, const Vec2 &normal)>;
 
   /// Throws std::invalid_argument for stiffnesses that are not > 0, friction or cohesion
-  /// below 0, and an initial traction that the law does not carry.
+  /// below 0, an initial traction that the law does not carry, and a grain whose centre
+  /// lies on the edge or behind it.
   SurfaceContact(SurfaceInterface interface,
                  const continuum::ContactLaw &law,
                  const InitialTraction &initial = {});
@@ -36,7 +37,7 @@ public:
   const SurfaceInterface &interface() const { return interface_; }
 
   /// Add the forces of the present positions to grains and @p mesh_force, and let slip go
-  /// on by a step.
+  /// on by a step. Throws NumericalError when a grain's centre goes through the edge.
   /// \param mesh_velocity half-step velocities that led here from @p dt ago [m/s]; with
   ///                      dt = 0 slip stays. All by local dof.
   void add_forces(discrete::Grains &grains,

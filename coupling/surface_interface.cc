@@ -59,8 +59,11 @@ SurfaceInterface::SurfaceInterface(const discrete::Grains &grains,
   for (const std::int32_t i : outer)
   {
     const EdgeCurve::Nearest seen = edge_.nearest(grains.reference(i), nullptr);
+    const bool is_behind =
+        cross(edge_.tangent(seen.place, nullptr),
+              grains.reference(i) - seen.point) > 0.; // the body is on the left
     if (!seen.beyond)
-      points_.push_back({i, seen.place, 0., seen.distance});
+      points_.push_back({i, seen.place, 0., is_behind ? -seen.distance : seen.distance});
   }
   if (points_.empty())
     throw std::invalid_argument(

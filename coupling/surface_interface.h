@@ -28,7 +28,7 @@ struct SurfacePoint
   std::int32_t grain = 0;
   EdgeCurve::Place place; ///< nearest to the grain's centre as the scene is built
   double length = 0.;     ///< of the reference edge that it stands for [m]
-  double distance = 0.;   ///< of the centre from the edge, stress-free [m]
+  double distance = 0.;   ///< of the centre from the edge, stress-free; < 0 behind it [m]
 };
 
 /// A layer's outer grains on the edge of a mesh, without overlap and without grains of

@@ -1,6 +1,8 @@
 // Surface interface in the loop: rest, energy, stable step.
 #include "support/surface_fixtures.h"
 
+#include "continuum/errors.h"
+
 #include <gtest/gtest.h>
 
 namespace antiform::coupling::test::surface_tests
@@ -383,7 +385,7 @@ TEST(Surface, StableStepWithContactIsABoundAndNotFarFromTheLimit)
       m.force -= mesh_at_rest;
     };
     const double limit = 2. / largest_frequency(model, add_contact_forces, [] {});
-    const auto growth = [&](const double dt)
+    const auto growth = [&](const double dt) -> double
     {
       SurfaceContact fresh = make();
       for (auto *field : {&g.displacement_x, &g.displacement_y, &g.rotation})
@@ -405,7 +407,14 @@ TEST(Surface, StableStepWithContactIsABoundAndNotFarFromTheLimit)
                "balance of the layer");
       loop.add(std::make_unique<MeshLoads>(m, on_mesh), {Stage::forces}, 32,
                "balance of the mesh");
-      loop.advance(1500);
+      try
+      {
+        loop.advance(1500);
+      }
+      catch (const NumericalError &) // it has torn the layer through the edge
+      {
+        return std::numeric_limits<double>::infinity();
+      }
       return m.velocity.linfty_norm() / 1e-12;
     };
     const double below = growth(0.99 * bound), above = growth(1.02 * limit);
@@ -414,8 +423,12 @@ TEST(Surface, StableStepWithContactIsABoundAndNotFarFromTheLimit)
     EXPECT_LT(bound, limit * (1. + 1e-3)); // the iteration comes from below
     EXPECT_GT(bound, 0.5 * limit);
     std::printf("contact %g times the default: bound over limit %.3f, over the step "
-                "without contact %.3f; growth %.1f, %.1e\n",
-                stiff, bound / limit, bound / model.stable_step(), below, above);
+                "without contact %.3f; growth %.1f, %.1e; grains alone %.3f\n",
+                stiff, bound / limit, bound / model.stable_step(), below, above,
+                model.stable_step() *
+                    largest_frequency(
+                        model, [] {}, [] {}) /
+                    2.);
   }
 }
 
@@ -464,9 +477,6 @@ TEST(Surface, LayerSlidesFromItsFrictionOn)
     const double way = std::abs(g.displacement_x[outer[10]] - there);
     std::printf("drag %.2f mu p: way %.2e of what is elastic\n", share,
                 way / (mu * p / k.shear));
-    int n_slide = 0;
-    for (const SurfaceContact::State &state : contact.states())
-      n_slide += state.phase == continuum::ContactPhase::slides;
     if (share < 1.)
     {
       EXPECT_LT(way, 1e-2 * mu * p / k.shear);

@@ -2,6 +2,8 @@
 // and the stable step.
 #include "support/surface_fixtures.h"
 
+#include "continuum/errors.h"
+
 #include <gtest/gtest.h>
 
 namespace antiform::coupling::test::surface_contact_tests
@@ -297,6 +299,41 @@ TEST(SurfaceContact, StartsUnderItsInitialTraction)
                std::invalid_argument);
 }
 
+/// A centre behind the edge has no side to be pushed to.
+TEST(SurfaceContact, RefusesGrainsBehindTheEdge)
+{
+  Bridged model;
+  make_layered_lattice(model, block_on_mesh());
+  discrete::Grains &g = model.state.grains;
+  SurfaceContact contact(interface_below(model), FrictionlessContact{1.}, {});
+  std::fill(g.displacement_y.begin(), g.displacement_y.end(), -0.6);
+  EXPECT_THROW(contact.add_forces(g, model.mesh->displacement, model.mesh->velocity, 0.,
+                                  model.mesh->force),
+               NumericalError);
+  for (double &y : g.reference_y)
+    y -= 0.6;
+  EXPECT_THROW(SurfaceContact(interface_below(model), FrictionlessContact{1.}, {}),
+               std::invalid_argument);
+}
+
+/// Two disks of radius 1/2 and modulus 1 have k_n = 1; a soft mesh gives ten times its
+/// own stiffness per row of cells.
+TEST(SurfaceContact, IsAsStiffAsTheSofterSide)
+{
+  for (const double ratio : {1., 1e-3})
+  {
+    LayeredShape shape = block_on_mesh();
+    shape.modulus_ratio = ratio;
+    Bridged model;
+    make_layered_lattice(model, shape);
+    const auto C = lattice_material(elastic_law()).stiffness;
+    const auto k =
+        surface_stiffness(interface_below(model), model.state.joints, *model.solid);
+    EXPECT_NEAR(k.normal, ratio == 1. ? 1. : 10. * ratio * C[1][1] / 2., 1e-12);
+    EXPECT_NEAR(k.shear, ratio == 1. ? 1. / 2.2 : 10. * ratio * C[2][2] / 2., 1e-12);
+  }
+}
+
 /// A grain that moves by cells follows the edge; one that has left it is free: past
 /// the corner by more than sqrt(0.5^2 - 0.49^2) = 0.0995.
 TEST(SurfaceContact, FollowsAlongTheEdge)
@@ -322,7 +359,9 @@ TEST(SurfaceContact, FollowsAlongTheEdge)
       EXPECT_GT(g.force_y[grain], 0.);
     }
     else if (start + x > 12.0995)
+    {
       EXPECT_EQ(g.force_y[grain], 0.);
+    }
   }
 }
 } // namespace antiform::coupling::test::surface_contact_tests
