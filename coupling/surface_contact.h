@@ -23,8 +23,9 @@ namespace antiform::coupling
 class SurfaceContact
 {
 public:
-  /// What the mesh does to a grain that is laid down in touch, at a place of the edge
-  /// with this normal (from the mesh to the grain): the stress times the normal [Pa].
+  /// What the grains do to a mesh on which they are laid down in touch, at a place of the
+  /// edge with this normal (from the mesh to the grain): the stress times the normal
+  /// [Pa].
   using InitialTraction = std::function<Vec2(const Vec2 &place, const Vec2 &normal)>;
 
   /// Throws std::invalid_argument for stiffnesses that are not > 0, friction or cohesion
@@ -67,9 +68,9 @@ public:
   /// Springs of the linearised contact as built: closed, frictional ones sticking.
   void add_to(StaticSystem &system) const;
 
-  /// Add each contact's stiffness, as if closed: to the sums of its grain, and to the
-  /// mesh's row sums sum_K |K_JK| by local dof [N/m], as mass scaling and stable steps
-  /// take them.
+  /// Add each contact's stiffness, as if closed and sticking: to the sums of its grain,
+  /// and to the mesh's row sums by local dof, twice k N for a node [N/m]. Masses scaled
+  /// with these sums to a step are stable at it.
   void add_stiffness(discrete::StiffnessSums &grain_sums,
                      std::vector<double> &mesh_row_sums) const;
 

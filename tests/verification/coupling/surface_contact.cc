@@ -299,6 +299,40 @@ TEST(SurfaceContact, StartsUnderItsInitialTraction)
                std::invalid_argument);
 }
 
+/// Masses scaled to a step with the contact's stiffness are stable at it, also under
+/// contacts that are much stiffer than either side; without its stiffness they are not.
+TEST(SurfaceContact, MassesScaledWithItsStiffnessAreStable)
+{
+  for (const double stiffness : {1., 100.})
+    for (const bool counted : {true, false})
+    {
+      Bridged model;
+      make_layered_lattice(model, block_on_mesh());
+      discrete::Grains &g = model.state.grains;
+      const SurfaceContact contact(
+          interface_below(model), FrictionalContact{stiffness, 0.5 * stiffness, 0.5, 0.});
+      discrete::StiffnessSums sums =
+          discrete::stiffness_sums(g, model.state.joints, false);
+      std::vector<double> rows(model.n_mesh_dofs(), 0.);
+      if (counted)
+        contact.add_stiffness(sums, rows);
+      const double dt0 = 10.; // far above the step of the real masses
+      discrete::scale_density(g, sums, {}, dt0);
+      model.mesh->scale_density(model.solid->lumped_mass(), rows, dt0);
+      const double step = surface_stable_step(g, model.state.joints, *model.solid,
+                                              model.mesh->inverse_mass, {&contact});
+      if (counted)
+      {
+        EXPECT_GE(step, dt0 * (1. - 1e-12));
+        EXPECT_LT(step, 1.5 * dt0); // by mass, not by the bound's slack
+      }
+      else if (stiffness > 1.)
+      {
+        EXPECT_LT(step, 0.5 * dt0);
+      }
+    }
+}
+
 /// A centre behind the edge has no side to be pushed to.
 TEST(SurfaceContact, RefusesGrainsBehindTheEdge)
 {

@@ -145,6 +145,25 @@ TEST(SurfaceTie, FollowsAFiniteRotation)
   }
 }
 
+/// Masses that have changed since are noticed, of the tied grains alone.
+TEST(SurfaceTie, KnowsTheMassesOfItsFactor)
+{
+  Bridged model;
+  make_layered_lattice(model, {});
+  SurfaceTie tie = make_tie(model, Kind::cemented, true);
+  discrete::Grains &g = model.state.grains;
+  EXPECT_FALSE(tie.is_factorised_for(g));
+  tie.factorise(g, model.mesh->inverse_mass);
+  EXPECT_TRUE(tie.is_factorised_for(g));
+  const std::int32_t outer = tie.interfaces()[1].points()[3].grain;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    if (std::abs(g.reference_y[i] - 0.5 * LayeredShape().thickness()) < 1.)
+      g.inverse_mass[i] *= 2.; // not tied
+  EXPECT_TRUE(tie.is_factorised_for(g));
+  g.inverse_inertia[outer] *= 2.;
+  EXPECT_FALSE(tie.is_factorised_for(g));
+}
+
 /// Cells half as large as grains: vertices between two grains follow the line from one to
 /// the other, and the constraint is not singular.
 TEST(SurfaceTie, BearsCellsSmallerThanGrains)
