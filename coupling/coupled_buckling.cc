@@ -29,10 +29,12 @@ struct FreeSystem
 {
   SparseMatrix K, C, G;
   std::vector<Eigen::Index> unknown; ///< of each free one
+  double diagonal;                   ///< to which the constraint is scaled
 
   FreeSystem(const StaticSystem &system, const SparseMatrix &geometric)
   {
     const SaddlePoint all = system.saddle_point();
+    diagonal = all.diagonal;
     std::vector<int> number(system.n_unknowns(), -1);
     for (std::size_t i = 0; i < number.size(); ++i)
       if (system.fixed().count(i) == 0)
@@ -287,6 +289,23 @@ double load_below_all(const FreeSystem &free, const SaddleFactor &at_rest)
   return load;
 }
 
+/// The mode of a load and its free unknowns @p v, with its errors.
+CoupledMode mode_of(const StaticSystem &system,
+                    const FreeSystem &free,
+                    const SaddleFactor &at_rest,
+                    const double factor,
+                    const VectorXd &v)
+{
+  const VectorXd x = v / v.cwiseAbs().maxCoeff();
+  const VectorXd rest = x + factor * at_rest.solve(free.G * x);
+  VectorXd whole = VectorXd::Zero(static_cast<Eigen::Index>(system.n_unknowns()));
+  for (std::size_t i = 0; i < free.unknown.size(); ++i)
+    whole[free.unknown[i]] = x[static_cast<Eigen::Index>(i)];
+  const double gap = free.C.rows() > 0 ? (free.C * x).cwiseAbs().maxCoeff() : 0.;
+  return {factor, system.solution_of(whole),
+          std::sqrt(rest.dot(free.K * rest) / x.dot(free.K * x)), gap / free.diagonal};
+}
+
 /// Whether as many modes were found below the last as the inertia says there are.
 void demand_all_lower_modes(const FreeSystem &free,
                             const std::vector<CoupledMode> &modes,
@@ -325,19 +344,11 @@ std::vector<CoupledMode> lowest_coupled_modes(const StaticSystem &system,
   for (const EigenPair &pair :
        largest(map, free.K, static_cast<int>(free.K.rows() - free.C.rows()), options))
   {
+    if (std::abs(pair.value - 1.) < 1e-12)
+      continue; // what the prestress does not act on: its load is infinite
     const double factor = shift * pair.value / (pair.value - 1.);
-    if (!(factor > 0.))
-      continue;
-    const VectorXd x = pair.vector / pair.vector.cwiseAbs().maxCoeff();
-    const VectorXd rest = x + factor * at_rest.solve(free.G * x);
-    VectorXd whole = VectorXd::Zero(static_cast<Eigen::Index>(system.n_unknowns()));
-    for (std::size_t i = 0; i < free.unknown.size(); ++i)
-      whole[free.unknown[i]] = x[static_cast<Eigen::Index>(i)];
-    modes.push_back({factor, system.solution_of(whole),
-                     std::sqrt(rest.dot(free.K * rest) / x.dot(free.K * x)),
-                     free.C.rows() > 0 ? (free.C * x).cwiseAbs().maxCoeff() /
-                                             system.saddle_point().diagonal
-                                       : 0.});
+    if (factor > 0.)
+      modes.push_back(mode_of(system, free, at_rest, factor, pair.vector));
   }
   if (modes.empty())
     throw NumericalError("linear buckling",

@@ -83,7 +83,6 @@ public:
   StaticSolution solution_of(const Eigen::VectorXd &x) const;
 
 private:
-
   const discrete::Grains &grains_;
   const discrete::Joints &joints_;
   const continuum::ElasticSolid *solid_;

@@ -186,6 +186,16 @@ TEST(BucklingOfABondedLayer, OfTableVeryThickCoverLong)
   compare("contrast 100, H/h 10", shape(100., 50, 60, 140), 0.3);
 }
 
+// Two cells of overlap and nothing between it and the layer: the mode is long beside
+// both.
+TEST(BucklingOfABondedLayer, NeedsNoWideOverlapLong)
+{
+  LayerShape narrow = shape(100., 25, 60, 140);
+  narrow.overlap = 4.;
+  narrow.buffer = 0.;
+  compare("contrast 100, H/h 5, overlap 4, no buffer", narrow, 0.17);
+}
+
 // Eight of them: the asked 3 % beyond the second; loads by size, since waves change
 // places where loads are within some tenths of a percent.
 TEST(BucklingOfABondedLayer, HigherModesLong)
