@@ -22,7 +22,7 @@ namespace antiform::coupling
 namespace
 {
 using Eigen::VectorXd;
-using Triplet = Eigen::Triplet<double>;
+using FreeEntry = Eigen::Triplet<double>;
 
 /// K, C and G on the unknowns that no support prescribes.
 struct FreeSystem
@@ -52,7 +52,7 @@ struct FreeSystem
   {
     const SparseMatrix A = K + factor * G;
     const int n = static_cast<int>(A.rows()), m = static_cast<int>(C.rows());
-    std::vector<Triplet> entries;
+    std::vector<FreeEntry> entries;
     for (int row = 0; row < n; ++row)
       for (SparseMatrix::InnerIterator it(A, row); it; ++it)
         entries.emplace_back(row, static_cast<int>(it.col()), it.value());
@@ -74,7 +74,7 @@ private:
                                  const std::vector<int> &number,
                                  const bool of_unknowns)
   {
-    std::vector<Triplet> entries;
+    std::vector<FreeEntry> entries;
     int n_rows = 0;
     for (Eigen::Index row = 0; row < all.rows(); ++row)
     {

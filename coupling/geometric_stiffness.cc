@@ -13,9 +13,9 @@ namespace antiform::coupling
 {
 namespace
 {
-using Triplets = std::vector<Eigen::Triplet<double>>;
+using JointEntries = std::vector<Eigen::Triplet<double>>;
 
-void add_entry(Triplets &entries,
+void add_entry(JointEntries &entries,
                const std::size_t row,
                const std::size_t column,
                const double value)
@@ -27,7 +27,7 @@ void add_entry(Triplets &entries,
 void add_joint(const StaticSystem &system,
                const std::size_t j,
                const discrete::JointMatrix &G,
-               Triplets &entries)
+               JointEntries &entries)
 {
   const discrete::Joints &joints = system.joints();
   const auto place = [&](const std::size_t a)
@@ -55,7 +55,7 @@ void refuse_damage(const discrete::Joints &joints)
 void add_biot_part(const continuum::ElasticSolid &solid,
                    const continuum::Vector &displacement,
                    const std::size_t begin,
-                   Triplets &entries)
+                   JointEntries &entries)
 {
   const auto &fe = solid.fe();
   dealii::FEValues<2> values(fe, dealii::QGauss<2>(fe.degree + 1),
@@ -106,7 +106,7 @@ void add_biot_part(const continuum::ElasticSolid &solid,
 void add_mesh(const StaticSystem &system,
               const continuum::Vector &displacement,
               const StrainMeasure measure,
-              Triplets &entries)
+              JointEntries &entries)
 {
   const auto G = system.solid()->geometric_stiffness(displacement);
   for (unsigned int row = 0; row < system.solid()->dof_handler().n_dofs(); ++row)
@@ -117,7 +117,7 @@ void add_mesh(const StaticSystem &system,
     add_biot_part(*system.solid(), displacement, system.mesh_begin(), entries);
 }
 
-SparseMatrix assembled(const StaticSystem &system, const Triplets &entries)
+SparseMatrix assembled(const StaticSystem &system, const JointEntries &entries)
 {
   const auto n = static_cast<Eigen::Index>(system.n_unknowns());
   SparseMatrix G(n, n);
@@ -132,7 +132,7 @@ SparseMatrix geometric_stiffness(const StaticSystem &system,
 {
   const discrete::Joints &joints = system.joints();
   refuse_damage(joints);
-  Triplets entries;
+  JointEntries entries;
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
     const auto rows = joint_rows(joints, j);
@@ -163,7 +163,7 @@ SparseMatrix present_geometric_stiffness(const StaticSystem &system,
                                          const double kept_share)
 {
   const discrete::Joints &joints = system.joints();
-  Triplets entries;
+  JointEntries entries;
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
     const double taken = joints.damage[j] < 0 ? 1. : 1. - kept_share;

@@ -9,20 +9,20 @@ namespace antiform::discrete
 namespace
 {
 /// Where a joint is: its mean frame, the branch in it, and half the relative rotation.
-struct Frame
+struct JointFrame
 {
   Vec2 normal, tangent;
   double along, across; ///< L.n, L.t [m]
   double face_cos, face_sin;
 };
 
-Frame frame_at_rest(const Joints &joints, const std::size_t j)
+JointFrame frame_at_rest(const Joints &joints, const std::size_t j)
 {
   const Vec2 n{joints.normal_x[j], joints.normal_y[j]};
   return {n, {-n.y, n.x}, joints.length[j], 0., 1., 0.};
 }
 
-Frame present_frame(const Grains &grains, const Joints &joints, const std::size_t j)
+JointFrame present_frame(const Grains &grains, const Joints &joints, const std::size_t j)
 {
   const auto one = static_cast<std::size_t>(joints.first[j]),
              two = static_cast<std::size_t>(joints.second[j]);
@@ -38,11 +38,11 @@ Frame present_frame(const Grains &grains, const Joints &joints, const std::size_
 }
 
 /// First derivatives of gap and shear.
-struct Gradients
+struct JointGradients
 {
   std::array<double, 6> gap, shear;
 };
-Gradients gradients(const Joints &joints, const std::size_t j, const Frame &at)
+JointGradients gradients(const Joints &joints, const std::size_t j, const JointFrame &at)
 {
   const double d = 0.5 * joints.length[j] * at.face_sin,
                r = 0.5 * joints.lever_difference[j] * at.face_cos;
@@ -54,7 +54,7 @@ Gradients gradients(const Joints &joints, const std::size_t j, const Frame &at)
 /// Second derivatives F d2g + S d2u_s.
 JointMatrix geometric(const Joints &joints,
                       const std::size_t j,
-                      const Frame &at,
+                      const JointFrame &at,
                       const JointTension &T)
 {
   JointMatrix G{};
@@ -86,14 +86,14 @@ std::array<double, 3> stiffness(const Joints &joints, const std::size_t j)
           normal * full * full * bond.moment_factor};
 }
 /// Forces of a joint and their derivatives by gap, shear and rotation, weighted.
-struct Response
+struct JointResponse
 {
   JointTension tension;
   double gap = 0., shear = 0.;             ///< dF/dg, dS/du_s [N/m]
   double gap_rotation = 0., rotation = 0.; ///< dF/dtheta [N], -dM/dtheta [N m]
 };
 
-Response
+JointResponse
 intact_response(const Joints &joints, const std::size_t j, const JointDeformation &d)
 {
   const auto k = stiffness(joints, j);
@@ -101,11 +101,11 @@ intact_response(const Joints &joints, const std::size_t j, const JointDeformatio
 }
 
 /// The elements' sums: what is bonded, and what is closed of the others.
-Response
+JointResponse
 damaged_response(const Joints &joints, const std::size_t j, const JointDeformation &d)
 {
   const auto record = static_cast<std::size_t>(joints.damage[j]);
-  Response sum;
+  JointResponse sum;
   if (joints.damaged.removed[record] != 0)
     return sum;
   const FlatJoint &law = joints.group_of(j).flat();
@@ -158,11 +158,11 @@ JointMatrix geometric_stiffness_at_rest(const Joints &joints,
 JointMatrix
 tangent_stiffness(const Grains &grains, const Joints &joints, const std::size_t j)
 {
-  const Frame at = present_frame(grains, joints, j);
-  const Gradients of = gradients(joints, j, at);
+  const JointFrame at = present_frame(grains, joints, j);
+  const JointGradients of = gradients(joints, j, at);
   const JointDeformation d = deformation(grains, joints, j);
-  const Response r = joints.damage[j] < 0 ? intact_response(joints, j, d)
-                                          : damaged_response(joints, j, d);
+  const JointResponse r = joints.damage[j] < 0 ? intact_response(joints, j, d)
+                                               : damaged_response(joints, j, d);
   JointMatrix K = geometric(joints, j, at, r.tension);
   constexpr std::array<double, 6> rotation{{0., 0., -1., 0., 0., 1.}};
   for (std::size_t a = 0; a < 6; ++a)

@@ -52,10 +52,10 @@ struct Comparison
         static_cast<double>(joined.n_grains()) / static_cast<double>(alone.n_grains());
     std::printf("  %s: %zu of %zu grains (%.0f %%);", name.c_str(), joined.n_grains(),
                 alone.n_grains(), 100. * share);
-    testing::Test::RecordProperty(name + " grains alone",
-                                  static_cast<int>(alone.n_grains()));
-    testing::Test::RecordProperty(name + " grains coupled",
-                                  static_cast<int>(joined.n_grains()));
+    ::testing::Test::RecordProperty(name + " grains alone",
+                                    static_cast<int>(alone.n_grains()));
+    ::testing::Test::RecordProperty(name + " grains coupled",
+                                    static_cast<int>(joined.n_grains()));
     grains = lowest(alone, StrainMeasure::biot, n);
     coupled = lowest(joined, StrainMeasure::biot, n);
     for (std::size_t k = 0; k < std::min(grains.size(), coupled.size()); ++k)
