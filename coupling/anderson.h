@@ -7,8 +7,8 @@
 
 namespace antiform::coupling
 {
-/// Anderson acceleration of a fixed-point iteration u <- u + g(u): the next increment is
-/// that of the combination of the last states whose g is smallest in the mean square
+/// Anderson acceleration of a fixed-point iteration u <- u + g(u): the next increment
+/// is that of the combination of the last states whose g is smallest in the mean square
 /// (Walker & Ni 2011, with full steps).
 class Anderson
 {

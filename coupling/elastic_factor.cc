@@ -8,7 +8,7 @@ namespace antiform::coupling
 {
 struct ElasticFactor::Factor
 {
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
+  Eigen::CholmodSimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
 };
 
 ElasticFactor::ElasticFactor(const Eigen::SparseMatrix<double> &matrix)

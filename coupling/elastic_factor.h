@@ -3,12 +3,12 @@
 #include <Eigen/SparseCore>
 
 #include <memory>
-#include <vector>
 
 namespace antiform::coupling
 {
-/// Cholesky factor (CHOLMOD, supernodal, nested or minimum-degree order) of a symmetric
-/// positive definite matrix, for many solves. One rank, one thread.
+/// Cholesky factor of a symmetric positive definite matrix, for many solves (CHOLMOD,
+/// simplicial, minimum-degree order: on bodies of some thousand grains a solve takes
+/// 0.6 of that with a supernodal one). One rank, one thread.
 class ElasticFactor
 {
 public:

@@ -118,7 +118,8 @@ void EventDriver::correct(const int corrections)
 void EventDriver::hand_over()
 {
   evaluate();
-  const bool past = body_.conjugate_force() < (1. - settings_.past_peak) * largest_force_;
+  const bool past =
+      body_.conjugate_force() < (1. - settings_.past_peak) * largest_force_;
   BalanceRatios limits = settings_.limits;
   limits.mean = past ? settings_.settled_after_peak : settings_.settled_before_peak;
   const HeldResult result = dynamics_(limits);

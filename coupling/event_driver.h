@@ -18,18 +18,18 @@ namespace antiform::coupling
 /// How a body is loaded through its events (docs/theory/quasi_static_driver.md).
 struct DriverSettings
 {
-  /// Of balance. The mean does not see a single break among many grains, nor the largest
-  /// one where joints carry much more than their tensile strength.
+  /// Of balance. The mean does not see a single break among many grains, nor the
+  /// largest one where joints carry much more than their tensile strength.
   BalanceRatios limits{1e-3, 0.1, 0.15};
   double largest_step = 1e-4;  ///< of the load parameter
   int events_per_step = 0;     ///< k: a load step reaches that many; 0: N / 300
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
 
-  int accelerate_after = 5;  ///< corrections since the last break or load step
+  int accelerate_after = 5; ///< corrections since the last break or load step
   int anderson_depth = 6;
-  int most_corrections = 400;        ///< then the body is handed over to explicit motion
-  double most_breaks = 0.125;        ///< at one load, per grain: likewise
+  int most_corrections = 400; ///< then the body is handed over to explicit motion
+  double most_breaks = 0.125; ///< at one load, per grain: likewise
   double settled_before_peak = 1e-4; ///< mean ratio that ends it
   double settled_after_peak = 1e-3;
   double past_peak = 0.05; ///< drop below the largest force that counts as after it [-]
@@ -67,9 +67,9 @@ struct DriverReport
 /// Explicit motion under held supports until the body is in balance within limits.
 using HandOver = std::function<HeldResult(const BalanceRatios &limits)>;
 
-/// Loads bonded grains without inertia: to the next few events; then, at that load, break
-/// the most loaded bond of each neighbourhood, restore balance, and again until no bond
-/// is over its strength. Where that does not end, explicit motion takes over.
+/// Loads bonded grains without inertia: to the next few events; then, at that load,
+/// break the most loaded bond of each neighbourhood, restore balance, and again until
+/// no bond is over its strength. Where that does not end, explicit motion takes over.
 class EventDriver
 {
 public:
@@ -83,9 +83,9 @@ public:
   /// Bonded grains alone.
   EventDriver(GrainBalance &body, const DriverSettings &settings);
 
-  /// Load, or unload, to the load parameter @p target; every balanced state is recorded,
-  /// the first one before the load changes. \return false when the force has fallen by
-  /// the stop's share below the largest one so far, and the run ended there
+  /// Load, or unload, to the load parameter @p target; every balanced state is
+  /// recorded, the first one before the load changes. \return false when the force has
+  /// fallen by the stop's share below the largest one so far, and the run ended there
   bool run_to(double target);
 
   double load() const { return load_; }

@@ -84,7 +84,8 @@ void GrainBalance::assemble()
         double value = 0.;
         for (unsigned int r = 0; r < 3; ++r)
           value += rows[r][a] * stiffness[r] * rows[r][b];
-        const Eigen::Index row = index(a < 3 ? joints.first[j] : joints.second[j], a % 3);
+        const Eigen::Index row =
+            index(a < 3 ? joints.first[j] : joints.second[j], a % 3);
         const Eigen::Index column =
             index(b < 3 ? joints.first[j] : joints.second[j], b % 3);
         if (prescribed_[row] > 0.)
@@ -118,7 +119,8 @@ void GrainBalance::add_forces(const discrete::StepTime &now,
   }
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
-    double *const force[3] = {&grains.force_x[i], &grains.force_y[i], &grains.torque[i]};
+    double *const force[3] = {&grains.force_x[i], &grains.force_y[i],
+                              &grains.torque[i]};
     for (unsigned int c = 0; c < 3; ++c)
       if (prescribed_[index(i, c)] > 0.)
       {

@@ -15,10 +15,11 @@ namespace antiform::coupling
 /// freedom. Torques count as forces at the rim of their grain.
 struct BalanceRatios
 {
-  double mean = 0.;        ///< their mean over the mean force of a joint [-]
-  double largest = 0.;     ///< their largest over the same [-]
-  double of_strength = 0.; ///< their largest over what an element carries when it breaks
-                           ///< in tension, in the mean of the breakable joints [-]
+  double mean = 0.;    ///< their mean over the mean force of a joint [-]
+  double largest = 0.; ///< their largest over the same [-]
+  double of_strength =
+      0.; ///< their largest over what an element carries when it breaks
+          ///< in tension, in the mean of the breakable joints [-]
   bool within(const BalanceRatios &limits) const
   {
     return mean < limits.mean && largest < limits.largest &&
@@ -26,19 +27,19 @@ struct BalanceRatios
   }
 };
 
-/// What a quasi-static driver needs of a body: the exact unbalanced force at the present
-/// state, and a symmetric elastic operator, no softer than the body, to correct it with.
-/// The vectors have an entry for each of its unknowns, prescribed ones included; what
-/// they mean is the body's business. A body of grains, mesh and bridging domain has its
-/// saddle point inside solve().
+/// What a quasi-static driver needs of a body: the exact unbalanced force at the
+/// present state, and a symmetric elastic operator, no softer than the body, to correct
+/// it with. The vectors have an entry for each of its unknowns, prescribed ones
+/// included; what they mean is the body's business. A body of grains, mesh and bridging
+/// domain has its saddle point inside solve().
 class BalanceOperator
 {
 public:
   virtual ~BalanceOperator() = default;
 
   virtual Eigen::Index n_unknowns() const = 0;
-  /// Unbalanced force [N], [N m]: external minus internal, 0 where motion is prescribed.
-  /// History (slip) is committed; no bond is tested.
+  /// Unbalanced force [N], [N m]: external minus internal, 0 where motion is
+  /// prescribed. History (slip) is committed; no bond is tested.
   virtual const Eigen::VectorXd &residual() = 0;
   /// Of the last residual().
   virtual BalanceRatios ratios() const = 0;
@@ -68,9 +69,9 @@ struct PrescribedMotion
 };
 
 /// Bonded grains in balance. Unknown 3 i + c is component c of grain i. The operator is
-/// the stiffness of the material as it was made, all bonds whole, weighted as the joints
-/// are: an upper bound of the damaged one, friction included, so that each correction
-/// descends.
+/// the stiffness of the material as it was made, all bonds whole, weighted as the
+/// joints are: an upper bound of the damaged one, friction included, so that each
+/// correction descends.
 class GrainBalance : public BalanceOperator
 {
 public:
@@ -94,10 +95,10 @@ public:
   double allowed_share(const Eigen::VectorXd &correction, double cap) const override;
   const Eigen::VectorXd &levers() const override { return levers_; }
 
-  /// Forces of joints and loads at the present displacements, into the grains; what acts
-  /// on prescribed components is taken off them: it is the supports'.
-  /// \param cracks      bonds break and are appended; null: none is tested
-  /// \param keep_forces of joints, for ratios()
+  /// Forces of joints and loads at the present displacements, into the grains; what
+  /// acts on prescribed components is taken off them: it is the supports'. \param
+  /// cracks      bonds break and are appended; null: none is tested \param keep_forces
+  /// of joints, for ratios()
   void add_forces(const discrete::StepTime &now,
                   std::vector<discrete::Crack> *cracks,
                   bool keep_forces);

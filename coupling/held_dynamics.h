@@ -25,9 +25,9 @@ struct HeldResult
 
 /// Let the grains go from rest, prescribed components held, bonds breaking, until the
 /// body is in balance within the limits; stop them there. Densities are scaled so that
-/// every grain has the same stable step, and put back afterwards. Cracks go to the state;
-/// their step and time are those of this motion, in units in which the stiffest grain's
-/// own period is of order 1. Throws NumericalError after the most steps.
+/// every grain has the same stable step, and put back afterwards. Cracks go to the
+/// state; their step and time are those of this motion, in units in which the stiffest
+/// grain's own period is of order 1. Throws NumericalError after the most steps.
 HeldResult
 settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits);
 } // namespace antiform::coupling

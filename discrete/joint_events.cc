@@ -31,9 +31,10 @@ void for_breakable(const Joints &joints, const Action &action)
     if (!law.breakable)
       continue;
     if (is_brittle(group.law))
-      throw std::invalid_argument("joints '" + group.name +
-                                  "' break as a whole: only elements of flat joints can "
-                                  "be listed by their load");
+      throw std::invalid_argument(
+          "joints '" + group.name +
+          "' break as a whole: only elements of flat joints can "
+          "be listed by their load");
     for (std::size_t j = group.begin; j < group.end; ++j)
       if (joints.damage[j] < 0 || !joints.damaged.removed[joints.damage[j]])
         action(j, law.n_elements);
@@ -42,7 +43,8 @@ void for_breakable(const Joints &joints, const Action &action)
 
 bool is_bonded(const Joints &joints, const std::size_t j, const int e)
 {
-  return joints.damage[j] < 0 || joints.damaged.bond(joints.damage[j], e) == Bond::bonded;
+  return joints.damage[j] < 0 ||
+         joints.damaged.bond(joints.damage[j], e) == Bond::bonded;
 }
 
 /// Step after which a quantity that is @p value now and changes at @p rate reaches
@@ -138,8 +140,9 @@ void break_elements(const Grains &grains,
 {
   for (const LoadedElement &broken : elements)
   {
-    const BondedElement place = bonded_element(joints, broken.joint, broken.element,
-                                               deformation(grains, joints, broken.joint));
+    const BondedElement place =
+        bonded_element(joints, broken.joint, broken.element,
+                       deformation(grains, joints, broken.joint));
     break_element(grains, joints, broken.joint, broken.element, broken.factor.mode);
     cracks.push_back(make_crack(grains, joints, broken.joint, broken.element, place.a,
                                 place.b, broken.factor.mode, now));

@@ -39,9 +39,10 @@ struct Specimen
              .disks)
       state.grains.add(disk.centre, disk.radius, 2600., 0);
     state.joints.begin_group(law, 0, "rock");
-    for (const auto &[i, j] :
-         discrete::pairs_within(state.grains, 0.5 * packing.installation_gap_ratio, 0, 0))
-      state.joints.add(state.grains, i, j, law.effective_modulus, law.effective_modulus);
+    for (const auto &[i, j] : discrete::pairs_within(
+             state.grains, 0.5 * packing.installation_gap_ratio, 0, 0))
+      state.joints.add(state.grains, i, j, law.effective_modulus,
+                       law.effective_modulus);
     state.joints.finish(state.grains.size());
     add_platens(top);
   }

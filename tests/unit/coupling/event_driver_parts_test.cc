@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace antiform::coupling::test::event_driver_parts_test_tests
+namespace antiform::coupling::test::event_driver_parts_tests
 {
 namespace
 {
@@ -49,8 +49,8 @@ TEST(ElasticFactor, RefusesABodyThatHangsOnNothing)
 
 TEST(Anderson, SolvesALinearProblemInAsManyStepsAsItHasEigenvalues)
 {
-  // g(u) = K^-1 (f - A u) with three different eigenvalues of K^-1 A: a fourth step, with
-  // three differences, is exact; the plain iteration contracts by 0.9.
+  // g(u) = K^-1 (f - A u) with three different eigenvalues of K^-1 A: a fourth step,
+  // with three differences, is exact; the plain iteration contracts by 0.9.
   const Eigen::Vector4d slope(0.1, 0.5, 1., 0.5), wanted(1., -2., 3., 4.);
   const auto g = [&](const Eigen::VectorXd &u)
   { return Eigen::VectorXd(slope.cwiseProduct(wanted - u)); };
@@ -174,4 +174,4 @@ TEST(LocalMaxima, LeaveOutWhatIsNearAMoreLoadedOne)
   EXPECT_EQ(taken[0].place.x, 3.);
   EXPECT_EQ(taken[1].place.x, 9.); // its nearer neighbour was left out itself
 }
-} // namespace antiform::coupling::test::event_driver_parts_test_tests
+} // namespace antiform::coupling::test::event_driver_parts_tests

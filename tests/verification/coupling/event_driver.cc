@@ -71,7 +71,8 @@ FirstBreak predict(const Specimen &specimen, const discrete::FlatJoint &law)
       const double strain = std::min(in_tension, in_shear);
       if (strain < first.strain)
         first = {j, e,
-                 in_tension < in_shear ? Bond::broken_in_tension : Bond::broken_in_shear,
+                 in_tension < in_shear ? Bond::broken_in_tension
+                                       : Bond::broken_in_shear,
                  strain, 0.};
     }
   }
@@ -104,7 +105,8 @@ void expect_first_break_as_predicted(const discrete::FlatJoint &law, const Bond 
   driver.run_to(0.999999 * predicted.strain);
   EXPECT_TRUE(specimen.state.cracks.empty());
   // Rounding, strains and the shortfall of the load are below a millionth.
-  EXPECT_NEAR(specimen.stress(driver.largest_force()) / predicted.stress, 0.999999, 1e-6);
+  EXPECT_NEAR(specimen.stress(driver.largest_force()) / predicted.stress, 0.999999,
+              1e-6);
   driver.run_to(1.00001 * predicted.strain);
   ASSERT_GE(specimen.state.cracks.size(), 1u);
   const discrete::Crack &crack = specimen.state.cracks.front();
@@ -176,8 +178,8 @@ TEST(EventDriver, EveryRecordIsInBalanceAndTheBooksClose)
   EXPECT_GT(specimen.state.cracks.size(), 300u);
   EXPECT_GE(report.hand_overs, 1);
 
-  // The limit of runs with breaks: what is left is the trapezoidal rule across a kink of
-  // the law, and breaks within explicit steps.
+  // The limit of runs with breaks: what is left is the trapezoidal rule across a kink
+  // of the law, and breaks within explicit steps.
   EXPECT_LT(open_share(report), 1e-3);
   const Energies &last = report.records.back().energies;
   for (const double term : {last.strain_grains, last.slip, last.fracture, last.damping})
@@ -275,7 +277,8 @@ TEST(EventDriver, ConstantLoadsComeUpAsInLinearTheory)
   for (std::size_t i = 0; i < specimen.n_grains(); ++i)
     EXPECT_NEAR(specimen.state.grains.displacement_x[i], linear.ux[i], 1e-6 * scale);
   const Energies &books = driver.report().records.back().energies;
-  // Loads put on at once do twice the work that is stored; holding takes the other half.
+  // Loads put on at once do twice the work that is stored; holding takes the other
+  // half.
   EXPECT_NEAR(books.damping / books.strain_grains, 1., 1e-6);
   EXPECT_NEAR(books.boundary_work / books.strain_grains, 2., 1e-6);
 }
@@ -295,8 +298,8 @@ TEST(EventDriver, ConfinementRaisesTheStrength)
 
 namespace
 {
-/// The elements' share in the stiffness of joint @p j as it is deformed, over gap, shear
-/// and rotation: bonded ones whole, broken ones by their closed length, sticking.
+/// The elements' share in the stiffness of joint @p j as it is deformed, over gap,
+/// shear and rotation: bonded ones whole, broken ones by their closed length, sticking.
 Eigen::Matrix3d damaged_stiffness(const Specimen &specimen, const std::size_t j)
 {
   const discrete::Joints &joints = specimen.state.joints;
@@ -387,7 +390,8 @@ Reversal reverse(const double load)
   Specimen specimen(12., 6);
   GrainBalance body(specimen.state, specimen.platens);
   DriverSettings settings = {};
-  settings.limits = {1e-7, 1e-5, 1e-5}; // of the stress; the step back changes 1e-3 of it
+  settings.limits = {1e-7, 1e-5,
+                     1e-5}; // of the stress; the step back changes 1e-3 of it
   settings.most_corrections = 5000;
   EventDriver driver(body, settings);
   const auto stress = [&] { return specimen.stress(body.conjugate_force()); };
