@@ -138,7 +138,9 @@ TEST(ThinOverlap, RunsOrIsRefused)
                 std::string::npos);
     }
     if (w == 2.)
+    {
       EXPECT_TRUE(runs);
+    }
   }
 }
 

@@ -119,7 +119,7 @@ struct PatchError
   }
 };
 
-Strain fitted_strain(const Bridged &model, const StaticSolution &u)
+Strain strain_of_core(const Bridged &model, const StaticSolution &u)
 {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
@@ -140,7 +140,7 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
   const Bridged &model = block.model;
   const StaticSolution u = block.solve(strain);
   PatchError error;
-  const Strain fit = fitted_strain(model, u);
+  const Strain fit = strain_of_core(model, u);
   error.strain = norm_of({{fit[0] - strain[0], fit[1] - strain[1], fit[2] - strain[2]}}) /
                  norm_of(strain);
 
