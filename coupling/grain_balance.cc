@@ -158,7 +158,7 @@ BalanceRatios GrainBalance::ratios() const
   }
   double carried = 0.;
   for (const discrete::JointForce &force : state_.joints.force)
-    carried += std::hypot(force.x, force.y);
+    carried += std::sqrt(force.x * force.x + force.y * force.y); // hypot is slow
   carried /= static_cast<double>(state_.joints.size());
   if (largest == 0.)
     return {};
@@ -229,7 +229,7 @@ double GrainBalance::allowed_share(const Eigen::VectorXd &correction,
                   correction[index(a < 3 ? joints.first[j] : joints.second[j], a % 3)];
       }
       const double deformation =
-          std::hypot(d[0], d[1]) + joints.half_length[j] * std::abs(d[2]);
+          std::sqrt(d[0] * d[0] + d[1] * d[1]) + joints.half_length[j] * std::abs(d[2]);
       worst = std::max(worst, deformation * joints.stiffness[j] / law.tensile_strength);
     }
   }
