@@ -339,7 +339,7 @@ public:
       add(std::make_unique<OverlapDamping>(*model.domain, *model.solid, grains, mesh,
                                            options.overlap_damping),
           {Stage::damp, Stage::drift}, 94, "overlap damping");
-    if (!model.domain->ties().empty())
+    if (model.domain && !model.domain->ties().empty())
       add(std::make_unique<TiedGrains>(model.domain->ties(), grains, mesh), {Stage::damp},
           90, "tied grains");
     add(std::make_unique<Bonds>(grains), {Stage::forces}, 20, "bonds");
