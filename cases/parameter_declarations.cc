@@ -262,7 +262,8 @@ void declare(RunParameters &run, Declarations &entries)
                  Number::above(0.).below(1.));
   entries.flag("Estimate loading-rate error", run.estimate_rate_error,
                "Drivers in time: after the run, repeat the last stretch before the peak "
-               "at half the loading rate and print how far the peak moves.");
+               "at half the loading rate (walls that step and relax: half the load step and "
+               "tolerance) and print how far the peak moves.");
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));

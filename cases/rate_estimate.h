@@ -15,14 +15,14 @@ struct RateEstimate
 {
   double peak = 0.;              ///< largest stress at the deck's rate [Pa]
   double peak_at_half_rate = 0.; ///< [Pa]
-  double from = 0.;              ///< stress at which the two part [Pa]
 
   /// Positive where the faster run was the stronger [-].
   double change() const { return peak / peak_at_half_rate - 1.; }
   void fill(Summary &summary) const;
 };
 
-/// Deck of the repetition: half the rate, ends once the stress has fallen by a tenth.
+/// Deck of the repetition: half the rate, or half the load step and relaxation tolerance;
+/// ends once the stress has fallen by a tenth.
 Parameters at_half_rate(const Parameters &parameters);
 
 /// The states of the last rises of the stress by a tenth, each a checkpoint of the run at

@@ -189,10 +189,10 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
         p.run.safety;
     const double transit = steps_per_grain * g.length() / d;
     const double millistrain = 1e3 * predict_shortening(p, g);
-    sizes.steps = transit * p.walls.transits_per_millistrain * millistrain;
-    if (p.walls.steps_and_relaxes())
-      sizes.steps = transit * transits_per_load_step * 1e-3 * millistrain /
-                    p.walls.load_step;
+    const double transits_per_millistrain =
+        p.walls.steps_and_relaxes() ? transits_per_load_step * 1e-3 / p.walls.load_step
+                                    : p.walls.transits_per_millistrain;
+    sizes.steps = transit * transits_per_millistrain * millistrain;
     if (p.confinement() != nullptr)
       sizes.steps += 2. * transit * p.confinement()->ramp;
     sizes.core_seconds = sizes.steps * (sizes.grains / grain_steps_per_second +

@@ -5,6 +5,7 @@
 #include "cases/interrupt.h"
 #include "cases/layer_packing.h"
 #include "cases/run_deck.h"
+#include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -228,7 +229,8 @@ int SteppedRun::estimate_rate_error()
   if (!recorder_->has_passed_peak() || !(from > 0.))
   {
     no_estimate_ = "there is no estimate of the loading-rate error: the run has not "
-                   "passed a peak after its first crack";
+                   "passed a peak after its first crack. Let it go on: raise 'Run/End "
+                   "shortening' or 'Run/Longest shortening'";
     return 0;
   }
   const Parameters deck = at_half_rate(parameters_);
@@ -242,10 +244,20 @@ int SteppedRun::estimate_rate_error()
     begin_from(before_peak_->file_before(peak), options_.output, deck, options.output);
   std::optional<coupling::StateReader> state = open_state(deck, options, communicator_);
   SteppedRun half(deck, options, log_, communicator_);
-  const int status = half(&*state);
-  if (status != 0)
-    return status;
-  rate_estimate_ = RateEstimate{peak, half.recorder_->peak_stress(), from};
+  try
+  {
+    if (const int status = half(&*state); status != 0)
+      return status;
+  }
+  catch (const NumericalError &error) // the run itself has ended well
+  {
+    half.fail(error.what());
+    no_estimate_ =
+        "there is no estimate of the loading-rate error, its run has failed: " +
+        std::string(error.what());
+    return 0;
+  }
+  rate_estimate_ = RateEstimate{peak, half.recorder_->peak_stress()};
   before_peak_->remove_files();
   return 0;
 }

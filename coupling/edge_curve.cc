@@ -24,6 +24,12 @@ LineShape line_shape(const unsigned int n_nodes, const double s)
   return {{(1. - s) * (1. - 2. * s), s * (2. * s - 1.), 4. * s * (1. - s)},
           {4. * s - 3., 4. * s - 1., 4. - 8. * s}};
 }
+
+/// Functions of nodes that a face has not are zero, and so are these nodes.
+Vec2 sum_of(const std::array<double, 3> &factors, const std::array<Vec2, 3> &nodes)
+{
+  return factors[0] * nodes[0] + factors[1] * nodes[1] + factors[2] * nodes[2];
+}
 } // namespace
 
 EdgeCurve::EdgeCurve(const continuum::DisplacementSpace &space,
@@ -139,22 +145,12 @@ std::array<Vec2, 3> EdgeCurve::nodes_now(const std::int32_t face,
 
 Vec2 EdgeCurve::point(const Place &place, const double *const displacement) const
 {
-  const LineShape line = line_shape(n_nodes_, place.s);
-  const std::array<Vec2, 3> nodes = nodes_now(place.face, displacement);
-  Vec2 sum;
-  for (unsigned int k = 0; k < n_nodes_; ++k)
-    sum += line.value[k] * nodes[k];
-  return sum;
+  return sum_of(line_shape(n_nodes_, place.s).value, nodes_now(place.face, displacement));
 }
 
 Vec2 EdgeCurve::tangent(const Place &place, const double *const displacement) const
 {
-  const LineShape line = line_shape(n_nodes_, place.s);
-  const std::array<Vec2, 3> nodes = nodes_now(place.face, displacement);
-  Vec2 sum;
-  for (unsigned int k = 0; k < n_nodes_; ++k)
-    sum += line.slope[k] * nodes[k];
-  return sum;
+  return sum_of(line_shape(n_nodes_, place.s).slope, nodes_now(place.face, displacement));
 }
 
 /// Nearest point of one face, s in [0, 1]: on the chord, and from there on the parabola

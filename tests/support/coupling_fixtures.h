@@ -442,9 +442,13 @@ inline void compute_forces(Bridged &model)
   model.solid->add_internal_force(model.mesh->displacement, model.mesh->force);
 }
 
-/// Largest angular frequency [rad/s] of the model, of its projection on the constraint or
-/// of its parts side by side, by power iteration from noise; approached from below.
-inline double largest_frequency(Bridged &model, const bool projected, const int n = 600)
+/// Largest angular frequency [rad/s] of grains, mesh and what @p add_forces adds, on
+/// velocities that @p project projects, by power iteration from the velocities that are
+/// there; approached from below. The model is at rest afterwards.
+inline double frequency_by_power_iteration(Bridged &model,
+                                           const std::function<void()> &add_forces,
+                                           const std::function<void()> &project,
+                                           const int n)
 {
   discrete::Grains &g = model.state.grains;
   MeshState &m = *model.mesh;
@@ -460,7 +464,6 @@ inline double largest_frequency(Bridged &model, const bool projected, const int 
       action(m.displacement.begin()[k], m.velocity.begin()[k], m.force.begin()[k],
              m.inverse_mass.begin()[k]);
   };
-  white_noise(model, 1., 17);
   double square = 0.;
   for (int iteration = 0; iteration < n; ++iteration)
   {
@@ -469,17 +472,30 @@ inline double largest_frequency(Bridged &model, const bool projected, const int 
             { norm += Mi > 0. ? v * v / Mi : 0.; });
     square = std::sqrt(norm);
     // Displacements of 1e-9: linear kinematics of the joints.
-    for_all([&](double &u, const double v, double, double)
-            { u = 1e-9 * v / std::sqrt(norm); });
+    for_all([&](double &u, double &v, double, double)
+            { u = v = 1e-9 * v / std::sqrt(norm); });
     m.displacement.update_ghost_values();
     compute_forces(model);
+    add_forces();
     for_all([&](double, double &v, const double f, const double Mi)
             { v = -1e9 * Mi * f; });
-    if (projected)
-      model.domain->project(g, m.velocity);
+    project();
   }
   for_all([](double &u, double &v, double, double) { u = v = 0.; });
   return std::sqrt(square);
+}
+
+/// Of the model, of its projection on the constraint or of its parts side by side.
+inline double largest_frequency(Bridged &model, const bool projected, const int n = 600)
+{
+  white_noise(model, 1., 17);
+  const auto project = [&]
+  {
+    if (projected)
+      model.domain->project(model.state.grains, model.mesh->velocity);
+  };
+  return frequency_by_power_iteration(
+      model, [] {}, project, n);
 }
 
 /// Copy a static solution to the state.

@@ -61,45 +61,13 @@ struct Ledger
   }
 };
 
-/// Largest angular frequency of grains, mesh and what @p add_forces adds, on velocities
-/// that @p project projects; power iteration from noise, from below.
+/// Of grains, mesh and what @p add_forces adds, on velocities that @p project projects.
 double largest_frequency(Bridged &model,
                          const std::function<void()> &add_forces,
-                         const std::function<void()> &project,
-                         const int n = 800)
+                         const std::function<void()> &project)
 {
-  discrete::Grains &g = model.state.grains;
-  MeshState &m = *model.mesh;
-  const auto for_all = [&](const auto &action) // value, velocity, force, inverse mass
-  {
-    for (std::size_t i = 0; i < g.size(); ++i)
-    {
-      action(g.displacement_x[i], g.velocity_x[i], g.force_x[i], g.inverse_mass[i]);
-      action(g.displacement_y[i], g.velocity_y[i], g.force_y[i], g.inverse_mass[i]);
-      action(g.rotation[i], g.spin[i], g.torque[i], g.inverse_inertia[i]);
-    }
-    for (unsigned int k = 0; k < m.displacement.locally_owned_size(); ++k)
-      action(m.displacement.begin()[k], m.velocity.begin()[k], m.force.begin()[k],
-             m.inverse_mass.begin()[k]);
-  };
   stir(model, 1., 17);
-  double square = 0.;
-  for (int iteration = 0; iteration < n; ++iteration)
-  {
-    double norm = 0.;
-    for_all([&](double, const double v, double, const double Mi)
-            { norm += Mi > 0. ? v * v / Mi : 0.; });
-    square = std::sqrt(norm);
-    for_all([&](double &u, double &v, double, double)
-            { u = v = 1e-9 * v / std::sqrt(norm); }); // linear kinematics
-    compute_forces(model);
-    add_forces();
-    for_all([&](double, double &v, const double f, const double Mi)
-            { v = -1e9 * Mi * f; });
-    project();
-  }
-  for_all([](double &u, double &v, double, double) { u = v = 0.; });
-  return std::sqrt(square);
+  return frequency_by_power_iteration(model, add_forces, project, 800);
 }
 } // namespace
 

@@ -1,6 +1,6 @@
 // Patch test on random packings: the core of a block cut from a periodic tile, under the
 // mesh's uniform strain, against the tile's own response to that strain.
-#include "support/coupling_fixtures.h"
+#include "support/lattice_patch.h"
 
 #include "discrete/homogenise.h"
 #include "discrete/packing.h"
@@ -17,17 +17,6 @@ namespace
 {
 constexpr double core_size = 24., tile_size = 44.; // core and overlap of 8 d on each side
 constexpr double installation_gap = 0.15;
-
-using Strain = std::array<double, 3>; // xx, yy, engineering xy
-
-Vec2 affine(const Strain &e, const Vec2 &x)
-{
-  return {e[0] * x.x + 0.5 * e[2] * x.y, 0.5 * e[2] * x.x + e[1] * x.y};
-}
-double norm_of(const Strain &e)
-{
-  return std::sqrt(e[0] * e[0] + e[1] * e[1] + 0.5 * e[2] * e[2]);
-}
 
 struct RandomBlock
 {
@@ -119,28 +108,12 @@ struct PatchError
   }
 };
 
-Strain strain_of_core(const Bridged &model, const StaticSolution &u)
-{
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
-  const discrete::Grains &g = model.state.grains;
-  for (std::size_t i = 0; i < g.size(); ++i)
-    if (model.weight.distance_to_core(g.reference(i)) == 0.)
-    {
-      const Eigen::Vector3d row(1., g.reference_x[i], g.reference_y[i]);
-      normal += row * row.transpose();
-      right += row * Eigen::RowVector2d(u.ux[i], u.uy[i]);
-    }
-  const Eigen::Matrix<double, 3, 2> a = normal.ldlt().solve(right);
-  return {{a(1, 0), a(2, 1), a(2, 0) + a(1, 1)}};
-}
-
 PatchError error_of(const RandomBlock &block, const Strain &strain)
 {
   const Bridged &model = block.model;
   const StaticSolution u = block.solve(strain);
   PatchError error;
-  const Strain fit = strain_of_core(model, u);
+  const Strain fit = fitted_strain(model, u);
   error.strain = norm_of({{fit[0] - strain[0], fit[1] - strain[1], fit[2] - strain[2]}}) /
                  norm_of(strain);
 
