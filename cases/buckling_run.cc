@@ -58,7 +58,9 @@ std::vector<std::string> doubts(const BucklingSection &section,
   const Mode &lowest = modes.front();
   const double columns = section.geometry().n_columns();
   const bool refined = section.parameters().matrix.refinement_rounds > 0;
-  if (refined && std::abs(last_change) > 0.01)
+  // The accuracy that closed forms are met with. What is left is 0.1 to 2.2 times the change
+  // (cases/burial-depth/accuracy.py).
+  if (refined && std::abs(last_change) > 0.02)
   {
     std::snprintf(text, sizeof text,
                   "the last round of refinement changed the load by %.2g %%: give more "

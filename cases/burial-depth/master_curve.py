@@ -48,8 +48,9 @@ def one(antiform, directory, contrast, cover):
                "Matrix/Cover rows": 1 if cover < 0.25 else 0}
     stress, wavelength = closed_form(antiform, entries)
     h = 10.
-    # Cells are measured in quarters of h: 16 columns a wavelength, far rows of a tenth.
+    # Even cells measured in quarters of h: 16 columns a wavelength, far rows of a tenth.
     entries |= {"Layer/Length ratio": 4. * wavelength / h,
+                "Matrix/Cell size ratio": 1, "Matrix/Refinement rounds": 0,
                 "Matrix/Base depth ratio": 3. * wavelength / h,
                 "Matrix/Cell aspect ratio": max(1., 4. * wavelength / h / 16.),
                 "Matrix/Largest cell ratio": max(1., 4. * wavelength / h / 10.),
