@@ -67,24 +67,40 @@ LinearElastic::respond(const PointInput &input, const double *, double *) const
           constants_.plane_stiffness()};
 }
 
+PointStress NeoHookean::stress(const PlaneVector &e) const
+{
+  const double change = area_change(e, "neo-Hookean law"), per_det = 1. / (1. + change);
+  const double volumetric = constants_.lambda * 0.5 * std::log1p(change);
+  const double mu = constants_.mu;
+  // C^-1, and 1 - C^-1 without cancellation: (det - C_yy) / det and so on.
+  const double xx = 1. + 2. * e[0], yy = 1. + 2. * e[1], square = e[2] * e[2];
+  return {per_det * (mu * (2. * e[0] * yy - square) + volumetric * yy),
+          per_det * (mu * (2. * e[1] * xx - square) + volumetric * xx), volumetric,
+          per_det * (mu - volumetric) * e[2]};
+}
+
+double NeoHookean::energy(const PlaneVector &e) const
+{
+  const double change = area_change(e, "neo-Hookean law");
+  const double log_jacobian = 0.5 * std::log1p(change);
+  // tr C - 3 - 2 ln J = 2 tr E - ln(1 + change); both are of first order in the strain,
+  // their difference of second: change - ln(1 + change) + 2 tr E - change.
+  const double shape = e[2] * e[2] - 4. * e[0] * e[1]; // 2 tr E - change
+  const double volume = change - std::log1p(change);
+  return 0.5 * constants_.mu * (shape + volume) +
+         0.5 * constants_.lambda * log_jacobian * log_jacobian;
+}
+
 PointResponse NeoHookean::respond(const PointInput &input, const double *, double *) const
 {
   const PlaneVector &e = input.strain;
   const double change = area_change(e, "neo-Hookean law"), det = 1. + change;
   const double log_jacobian = 0.5 * std::log1p(change);
   const double lambda = constants_.lambda, mu = constants_.mu;
-
-  // C^-1, and 1 - C^-1 without cancellation: (det - C_yy) / det and so on.
   const PlaneVector inverse{(1. + 2. * e[1]) / det, (1. + 2. * e[0]) / det, -e[2] / det};
-  const PlaneVector rest{(2. * e[0] * (1. + 2. * e[1]) - e[2] * e[2]) / det,
-                         (2. * e[1] * (1. + 2. * e[0]) - e[2] * e[2]) / det, e[2] / det};
-  const PointStress stress{mu * rest[0] + lambda * log_jacobian * inverse[0],
-                           mu * rest[1] + lambda * log_jacobian * inverse[1],
-                           lambda * log_jacobian,
-                           mu * rest[2] + lambda * log_jacobian * inverse[2]};
 
   // lambda C^-1 x C^-1 + (mu - lambda ln J)(C^-1_IK C^-1_JL + C^-1_IL C^-1_JK)
-  PointResponse response{sum(input.initial, stress), {}};
+  PointResponse response{sum(input.initial, stress(e)), {}};
   const double shear = mu - lambda * log_jacobian;
   const auto at = [&](const int i, const int j) { return inverse[i == j ? i : 2]; };
   constexpr int first[] = {0, 1, 0}, second[] = {0, 1, 1};

@@ -56,6 +56,11 @@ public:
   bool is_finite_strain() const override { return true; }
   PointResponse
   respond(const PointInput &input, const double *begin, double *end) const override;
+  /// S at a Green-Lagrange strain, and the energy per area of the reference body that it
+  /// derives from, mu/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2 [J/m^3]. Throw as
+  /// respond().
+  PointStress stress(const PlaneVector &strain) const;
+  double energy(const PlaneVector &strain) const;
 
 private:
   LameConstants constants_;

@@ -30,7 +30,8 @@ struct ElasticMaterial
 };
 
 /// Small-strain elastic body. Stiffness, mass and loads carry the weight w_C(x) of the
-/// bridging domain where one is given.
+/// bridging domain where one is given. A body of finite strain (FiniteStrainSolid) is one
+/// with other forces, energies and states; stiffness() is then that at rest.
 class ElasticSolid : public DisplacementSpace
 {
 public:
@@ -40,6 +41,8 @@ public:
                std::vector<ElasticMaterial> materials,
                unsigned int degree,
                std::function<double(const dealii::Point<2> &)> weight = {});
+
+  virtual ~ElasticSolid() = default;
 
   const std::vector<ElasticMaterial> &materials() const { return materials_; }
 
@@ -59,7 +62,7 @@ public:
 
   /// Add -K u to @p force (owned entries), also of hanging nodes. @p displacement must
   /// have its ghosts set. Uses OpenMP; each row is summed in a fixed order.
-  void add_internal_force(const Vector &displacement, Vector &force) const;
+  virtual void add_internal_force(const Vector &displacement, Vector &force) const;
   /// Add to K and to the rows of add_internal_force() a spring on a boundary: foundation.
   void add_to_stiffness(const dealii::TrilinosWrappers::SparseMatrix &matrix);
 
@@ -68,7 +71,7 @@ public:
   /// safety factor. Collective.
   double stable_step(const Vector &inverse_mass) const;
   /// Row sums sum_K |K_JK| (owned entries) [N/m].
-  Vector absolute_row_sums() const;
+  virtual Vector absolute_row_sums() const;
 
   /// Strain (xx, yy, xy-engineering) and stress (initial stress not included) averaged
   /// over each active locally owned cell, in cell order.
@@ -80,12 +83,16 @@ public:
     double weight;   ///< mean w_C [-]
     unsigned int material;
   };
-  std::vector<CellState> cell_states(const Vector &displacement) const;
+  virtual std::vector<CellState> cell_states(const Vector &displacement) const;
 
   /// 1/2 u.K u, foundation included [J]: this rank's rows of it, and all; all is
   /// collective.
-  double strain_energy_share(const Vector &displacement) const;
+  virtual double strain_energy_share(const Vector &displacement) const;
   double strain_energy(const Vector &displacement) const;
+
+protected:
+  /// Throws std::invalid_argument for an id without one.
+  const ElasticMaterial &material(dealii::types::material_id id) const;
 
 private:
   /// A rank's rows of K in blocks of one node: two rows (x, y) and two columns, since the
@@ -105,7 +112,6 @@ private:
   geometric_stiffness_of(const Stress &stress) const;
   void assemble_mass();
   void build_rows();
-  const ElasticMaterial &material(dealii::types::material_id id) const;
 
   std::vector<ElasticMaterial> materials_;
   dealii::TrilinosWrappers::SparseMatrix stiffness_;

@@ -2,6 +2,7 @@
 // Grains and mesh joined in an overlap, as the program joins them. Unit of length is the
 // mean grain diameter d, of stress the grains' modulus E*, of density that of a grain.
 #include "continuum/elastic_solid.h"
+#include "continuum/finite_strain_solid.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/grain_components.h"
 #include "coupling/joining_components.h"
@@ -154,6 +155,7 @@ struct Bridged
   unsigned int degree = 1; ///< of the cells
   BridgingOptions options;
   bool tie_unsupported = false; ///< grains that nothing holds
+  bool finite_strain = false;   ///< of the mesh
 
   /// One thread: these models are too small to share out.
   Bridged() { omp_set_num_threads(1); }
@@ -179,11 +181,16 @@ struct Bridged
     state.breaking = false;
     if (tie_unsupported)
       options.tied_grains = unsupported_grains(state.grains, state.joints, weight);
-    solid = std::make_unique<continuum::ElasticSolid>(
-        triangulation, std::vector<continuum::ElasticMaterial>{material}, degree,
-        [w = weight](const dealii::Point<2> &x) {
-          return w.mesh({x[0], x[1]});
-        });
+    const std::vector<continuum::ElasticMaterial> materials{material};
+    const auto of_mesh = [w = weight](const dealii::Point<2> &x) {
+      return w.mesh({x[0], x[1]});
+    };
+    if (finite_strain)
+      solid = std::make_unique<continuum::FiniteStrainSolid>(triangulation, materials,
+                                                             degree, of_mesh);
+    else
+      solid = std::make_unique<continuum::ElasticSolid>(triangulation, materials, degree,
+                                                        of_mesh);
     mesh.emplace(*solid);
     domain = std::make_unique<BridgingDomain>(state.grains, state.joints, *solid, weight,
                                               0.02 * material.density * cell, options);
