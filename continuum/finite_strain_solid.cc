@@ -105,29 +105,39 @@ double spectral_norm(const std::array<double, 4> &b)
 }
 } // namespace
 
-FiniteStrainLaw::FiniteStrainLaw(const ElasticMaterial &material)
-    : isotropic_(isotropic_part(material.stiffness))
+FiniteStrainLaw::FiniteStrainLaw(const ElasticMaterial &material,
+                                 const FiniteElasticity form)
+    : form_(form)
+    , neo_hookean_(isotropic_part(material.stiffness))
+    , semi_linear_(isotropic_part(material.stiffness))
     , rest_(rest_of(material))
 {
 }
 
 PlaneVector FiniteStrainLaw::stress(const PlaneVector &strain) const
 {
-  const PointStress S = isotropic_.stress(strain);
+  const PointStress S = form_ == FiniteElasticity::semi_linear
+                            ? semi_linear_.stress(strain)
+                            : neo_hookean_.stress(strain);
   const PlaneVector more = product(rest_, strain);
   return {S.xx + more[0], S.yy + more[1], S.xy + more[2]};
 }
 
 double FiniteStrainLaw::energy(const PlaneVector &strain) const
 {
-  return isotropic_.energy(strain) + 0.5 * dot(strain, product(rest_, strain));
+  const double isotropic = form_ == FiniteElasticity::semi_linear
+                               ? semi_linear_.energy(strain)
+                               : neo_hookean_.energy(strain);
+  return isotropic + 0.5 * dot(strain, product(rest_, strain));
 }
 
 std::array<PlaneVector, 3> FiniteStrainLaw::tangent(const PlaneVector &strain) const
 {
   PointInput input;
   input.strain = strain;
-  Stiffness C = isotropic_.respond(input, nullptr, nullptr).tangent;
+  Stiffness C = form_ == FiniteElasticity::semi_linear
+                    ? semi_linear_.respond(input, nullptr, nullptr).tangent
+                    : neo_hookean_.respond(input, nullptr, nullptr).tangent;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       C[i][j] += rest_[i][j];
@@ -138,12 +148,13 @@ FiniteStrainSolid::FiniteStrainSolid(
     const parallel::distributed::Triangulation<2> &triangulation,
     std::vector<ElasticMaterial> materials,
     const unsigned int degree,
-    std::function<double(const Point<2> &)> weight)
+    std::function<double(const Point<2> &)> weight,
+    const FiniteElasticity form)
     : ElasticSolid(triangulation, std::move(materials), degree, std::move(weight))
     , n_points_((degree + 1) * (degree + 1))
 {
   for (const ElasticMaterial &material : this->materials())
-    laws_.emplace_back(material);
+    laws_.emplace_back(material, form);
   lay_out_cells();
   lay_out_nodes();
 }

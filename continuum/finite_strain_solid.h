@@ -2,6 +2,7 @@
 
 #include "continuum/elastic_laws.h"
 #include "continuum/elastic_solid.h"
+#include "continuum/semi_linear_law.h"
 
 #include <array>
 #include <cstdint>
@@ -9,16 +10,23 @@
 
 namespace antiform::continuum
 {
-/// Elastic law of finite strain with any stiffness at rest, in total Lagrangian form: a
-/// neo-Hookean solid has its isotropic part, 1/2 E : R : E the rest R of it, which turns
-/// with the material. S and energy derive from one potential.
+/// How the isotropic part of a material goes on from its stiffness at rest.
+enum class FiniteElasticity
+{
+  neo_hookean, ///< resists without bound as J -> 0
+  semi_linear  ///< as bonded grains do: what belongs beside them
+};
+
+/// Elastic law of finite strain with any stiffness at rest, in total Lagrangian form: its
+/// isotropic part is that of a neo-Hookean or semi-linear solid, 1/2 E : R : E the rest R
+/// of it, which turns with the material. S and energy derive from one potential.
 class FiniteStrainLaw
 {
 public:
   /// \param material its stiffness is that at rest
   /// Throws std::invalid_argument where R is more than a tenth of the isotropic part: it
   /// would soften under compression as St Venant and Kirchhoff's solid does.
-  explicit FiniteStrainLaw(const ElasticMaterial &material);
+  FiniteStrainLaw(const ElasticMaterial &material, FiniteElasticity form);
 
   /// S [Pa], energy [J/m^3] and dS/dE [Pa] at a Green-Lagrange strain.
   PlaneVector stress(const PlaneVector &strain) const;
@@ -26,7 +34,9 @@ public:
   std::array<PlaneVector, 3> tangent(const PlaneVector &strain) const;
 
 private:
-  NeoHookean isotropic_;
+  FiniteElasticity form_;
+  NeoHookean neo_hookean_;
+  SemiLinear semi_linear_;
   std::array<PlaneVector, 3> rest_; ///< R [Pa]
 };
 
@@ -41,7 +51,8 @@ public:
   FiniteStrainSolid(const dealii::parallel::distributed::Triangulation<2> &triangulation,
                     std::vector<ElasticMaterial> materials,
                     unsigned int degree,
-                    std::function<double(const dealii::Point<2> &)> weight = {});
+                    std::function<double(const dealii::Point<2> &)> weight = {},
+                    FiniteElasticity form = FiniteElasticity::semi_linear);
 
   /// Forces are not those of the matrix: springs are for components of their own.
   void add_to_stiffness(const dealii::TrilinosWrappers::SparseMatrix &) = delete;

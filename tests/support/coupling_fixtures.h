@@ -156,6 +156,7 @@ struct Bridged
   BridgingOptions options;
   bool tie_unsupported = false; ///< grains that nothing holds
   bool finite_strain = false;   ///< of the mesh
+  continuum::FiniteElasticity form = continuum::FiniteElasticity::semi_linear;
 
   /// One thread: these models are too small to share out.
   Bridged() { omp_set_num_threads(1); }
@@ -187,7 +188,7 @@ struct Bridged
     };
     if (finite_strain)
       solid = std::make_unique<continuum::FiniteStrainSolid>(triangulation, materials,
-                                                             degree, of_mesh);
+                                                             degree, of_mesh, form);
     else
       solid = std::make_unique<continuum::ElasticSolid>(triangulation, materials, degree,
                                                         of_mesh);

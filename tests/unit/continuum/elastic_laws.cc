@@ -1,5 +1,6 @@
 #include "continuum/elastic_laws.h"
 #include "continuum/errors.h"
+#include "continuum/semi_linear_law.h"
 #include "support/material_point.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +22,7 @@ std::vector<std::unique_ptr<MaterialLaw>> all_laws()
   laws.push_back(std::make_unique<LinearElastic>(rock));
   laws.push_back(std::make_unique<NeoHookean>(rock));
   laws.push_back(std::make_unique<StVenantKirchhoff>(rock));
+  laws.push_back(std::make_unique<SemiLinear>(rock));
   return laws;
 }
 

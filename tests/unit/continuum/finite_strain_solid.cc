@@ -13,6 +13,7 @@
 namespace antiform::testing::finite_strain_solid_tests
 {
 using continuum::ElasticMaterial;
+using continuum::FiniteElasticity;
 using continuum::FiniteStrainSolid;
 
 namespace
@@ -28,9 +29,10 @@ double ramp(const Point<2> &p)
 FiniteStrainSolid body(const Triangulation &mesh,
                        const unsigned int degree,
                        const ElasticMaterial &material =
-                           ElasticMaterial::isotropic(young, poisson, 2., "rock"))
+                           ElasticMaterial::isotropic(young, poisson, 2., "rock"),
+                       const FiniteElasticity form = FiniteElasticity::neo_hookean)
 {
-  return FiniteStrainSolid(mesh, {material}, degree, ramp);
+  return FiniteStrainSolid(mesh, {material}, degree, ramp, form);
 }
 
 /// Neither isotropic nor symmetric about an axis.
@@ -69,18 +71,24 @@ Vector turned(const continuum::DisplacementSpace &space,
 }
 } // namespace
 
-TEST(FiniteStrainSolid, ForcesAreThoseOfTheStaticDriversNeoHookeanBody)
+TEST(FiniteStrainSolid, ForcesAreThoseOfTheStaticDriversBody)
 {
   Triangulation mesh(MPI_COMM_SELF);
   make_distorted_square(mesh, 4);
-  for (const unsigned int degree : {1u, 2u})
+  const auto rock = ElasticMaterial::isotropic(young, poisson, 2., "rock");
+  for (const auto &[degree, form, law] :
+       {std::tuple{1u, FiniteElasticity::neo_hookean,
+                   make_law<continuum::NeoHookean>(young, poisson)},
+        std::tuple{2u, FiniteElasticity::neo_hookean,
+                   make_law<continuum::NeoHookean>(young, poisson)},
+        std::tuple{1u, FiniteElasticity::semi_linear,
+                   make_law<continuum::SemiLinear>(young, poisson)}})
   {
-    const FiniteStrainSolid solid = body(mesh, degree);
+    const FiniteStrainSolid solid = body(mesh, degree, rock, form);
     continuum::NonlinearSolid::Options options;
     options.degree = degree;
     options.weight = ramp;
-    continuum::NonlinearSolid plain(
-        mesh, {make_law<continuum::NeoHookean>(young, poisson)}, options);
+    continuum::NonlinearSolid plain(mesh, {law}, options);
     const Vector u = wavy_field(solid, 0.15); // gradients of 0.4
     Vector expected = plain.make_vector();
     plain.assemble(u, 0., expected, nullptr);
@@ -96,9 +104,10 @@ TEST(FiniteStrainSolid, ForcesAreTheSlopeOfTheEnergy)
 {
   Triangulation mesh(MPI_COMM_SELF);
   make_distorted_square(mesh, 3);
-  for (const unsigned int degree : {1u, 2u})
+  for (const auto &[degree, form] : {std::pair{1u, FiniteElasticity::neo_hookean},
+                                     std::pair{2u, FiniteElasticity::semi_linear}})
   {
-    const FiniteStrainSolid solid = body(mesh, degree, fabric());
+    const FiniteStrainSolid solid = body(mesh, degree, fabric(), form);
     const Vector u = wavy_field(solid, 0.1);
     const Vector way = interpolate(solid, [](const Point<2> &p, const unsigned int c)
                                    { return std::cos(3. * p[c] + p[1 - c]); });
@@ -148,7 +157,7 @@ TEST(FiniteStrainSolid, TurnsWithItsForcesAndStates)
 {
   Triangulation mesh(MPI_COMM_SELF);
   make_distorted_square(mesh, 3);
-  const FiniteStrainSolid solid = body(mesh, 1, fabric());
+  const FiniteStrainSolid solid = body(mesh, 1, fabric(), FiniteElasticity::semi_linear);
   const Vector u = wavy_field(solid, 0.1);
   const Vector force = internal_force(solid, u);
   const auto states = solid.cell_states(u);
