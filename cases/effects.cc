@@ -114,7 +114,7 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("prestress", p.has("gravity") || p.has("surface pressure"),
                         "gravity or surface pressure: the section was laid down under it",
                         "neither gravity nor surface pressure"));
-  list.push_back(choose("finite strain", p.run.driver == "static" && p.run.strain == "finite",
+  list.push_back(choose("finite strain", mesh && p.run.strain == "finite",
                         "'Run / Strain' is finite",
                         mesh ? "'Run / Strain' is small" : "nothing is finite elements"));
   const auto any = [&](const auto &is)

@@ -12,6 +12,11 @@ namespace antiform::cases
 {
 using discrete::StiffnessSums;
 
+double damping_factor(const Parameters &p)
+{
+  return p.has("damping") ? 1. / std::sqrt(1. + p.damping.coefficient) : 1.;
+}
+
 namespace
 {
 /// Contacts of the grains that no joint holds. The overlap is beyond them: weight 1.
@@ -40,14 +45,6 @@ std::vector<double> base_springs(const Scene &scene)
     if (std::isfinite(support.stiffness))
       springs[support.grain] += support.stiffness;
   return springs;
-}
-
-/// By what damping shortens the stable step. Each dof is pulled by r + d with
-/// |d| <= alpha |r|: as if it were stiffer by at most 1 + alpha. It is where it vibrates
-/// from step to step, at the bound.
-double damping_factor(const Parameters &p)
-{
-  return p.has("damping") ? 1. / std::sqrt(1. + p.damping.coefficient) : 1.;
 }
 
 std::vector<discrete::PairStiffness> fracture_springs(const Scene &scene)

@@ -6,7 +6,13 @@
 
 namespace antiform::cases
 {
+struct Parameters;
 struct Scene;
+
+/// By what damping shortens the stable step [-]. Each dof is pulled by r + d with
+/// |d| <= alpha |r|: as if it were stiffer by at most 1 + alpha. It is where it vibrates
+/// from step to step, at the bound.
+double damping_factor(const Parameters &parameters);
 
 /// Sums of contact stiffness on each grain, walls and contacts included, without the
 /// bridging weights: for density scaling.

@@ -268,7 +268,9 @@ void declare(RunParameters &run, Declarations &entries)
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));
   entries.choice("Strain", run.strain,
-                 "Static driver: small strain and rotation, or finite.", "small|finite");
+                 "Of finite elements, static driver and drivers in time: small strain and "
+                 "rotation, or finite.",
+                 "small|finite");
   entries.number("Duration", run.duration,
                  "Static driver: time in which the section is shortened, for viscous "
                  "materials [s].",

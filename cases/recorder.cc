@@ -149,7 +149,7 @@ void Recorder::run(const Stage, const Clock &clock)
   if (sample.stress >= scene_.parameters.run.stress_ratio_of_peak * peak_stress_)
     last_high_strain_ = sample.strain;
   last_ = sample;
-  if (scene_.mesh)
+  if (scene_.mesh && scene_.parameters.run.strain == "small")
     mesh_watch_.look(*scene_.solid, scene_.mesh->displacement, clock.step);
   if (sample.strain >= next_field_)
   {

@@ -8,6 +8,7 @@
 #include "cases/section_materials.h"
 
 #include "continuum/errors.h"
+#include "continuum/finite_strain_solid.h"
 #include "continuum/section_mesh.h"
 #include "discrete/locked_in.h"
 
@@ -60,8 +61,14 @@ void build_mesh(Scene &scene, const MPI_Comm communicator)
     weight = [w = overlap_weight(p, scene.geometry)](const dealii::Point<2> &x) {
       return w.mesh({x[0], x[1]});
     };
-  scene.solid = std::make_unique<continuum::ElasticSolid>(
-      *scene.triangulation, materials, p.matrix.element_degree, weight);
+  if (p.run.strain == "finite") // beside grains as they strain; else as the static driver
+    scene.solid = std::make_unique<continuum::FiniteStrainSolid>(
+        *scene.triangulation, materials, p.matrix.element_degree, weight,
+        scene.grains ? continuum::FiniteElasticity::semi_linear
+                     : continuum::FiniteElasticity::neo_hookean);
+  else
+    scene.solid = std::make_unique<continuum::ElasticSolid>(
+        *scene.triangulation, materials, p.matrix.element_degree, weight);
   scene.mesh.emplace(*scene.solid);
 }
 

@@ -10,6 +10,7 @@
 #include "continuum/loads.h"
 #include "continuum/section_mesh.h"
 #include "coupling/absorbing_component.h"
+#include "coupling/mesh_step_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +27,7 @@ namespace
 enum Rank
 {
   rank_mesh = 5,
+  rank_mesh_step = 6, // positions that the mesh has just been found sound at
   rank_broken = 10,
   rank_bonds = 20,
   rank_search = 25,
@@ -327,6 +329,11 @@ void add_common_components(Scene &scene)
              reason_for(p, "mesh"))
         .damping = mesh_damping;
   }
+  if (const auto *const finite =
+          dynamic_cast<const continuum::FiniteStrainSolid *>(scene.solid.get()))
+    simulation.add(std::make_unique<MeshStepCheck>(*mesh, *finite, damping_factor(p)),
+                   {Stage::forces}, rank_mesh_step, "finite strain",
+                   reason_for(p, "finite strain"));
   if (p.has("absorbing boundary"))
     simulation.add(
         std::make_unique<AbsorbingBoundary>(

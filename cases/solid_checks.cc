@@ -53,6 +53,25 @@ void check_material(const Parameters &p,
          "stiff. Give 'Matrix/Element degree' = 2, or less than 0.45.");
 }
 
+/// Finite strain where the mesh steps in time, or buckles.
+void check_finite_strain(const Parameters &p, Findings &findings)
+{
+  if (p.run.driver == "buckling")
+    findings.push_back({{"Run/Strain", "Run/Driver"},
+                        "the buckling driver is of small strain in its finite elements. "
+                        "Give small, or 'Run/Driver' = 'static'."});
+  else if (!p.has_layer_mesh() && !p.has_matrix_mesh())
+    findings.push_back({{"Run/Strain", "Matrix/Representation"},
+                        "nothing of this section is finite elements, and grains turn by "
+                        "any angle anyway. Give small."});
+  else
+    for (const std::string load : {"gravity", "surface pressure"})
+      if (p.has(load))
+        findings.push_back({{"Run/Strain", "Components"},
+                            "the prestress that is installed under " + load +
+                                " does not turn with the section. Remove " + load +
+                                " from 'Components', or give small."});
+}
 } // namespace
 
 void check_materials(const Parameters &p, Findings &findings)
@@ -64,10 +83,7 @@ void check_materials(const Parameters &p, Findings &findings)
     check_material(p, "Matrix material", p.matrix_material, p.matrix.poisson_ratio,
                    findings);
   if (p.run.strain == "finite" && p.run.driver != "static")
-    findings.push_back({{"Run/Strain", "Run/Driver"},
-                        "the " + p.run.driver +
-                            " driver is of small strain in its finite "
-                            "elements. Give small, or 'Run/Driver' = 'static'."});
+    check_finite_strain(p, findings);
 }
 
 /// What the linear theory of buckling leaves out.
