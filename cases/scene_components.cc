@@ -331,9 +331,15 @@ void add_common_components(Scene &scene)
   }
   if (const auto *const finite =
           dynamic_cast<const continuum::FiniteStrainSolid *>(scene.solid.get()))
-    simulation.add(std::make_unique<MeshStepCheck>(*mesh, *finite, damping_factor(p)),
-                   {Stage::forces}, rank_mesh_step, "finite strain",
-                   reason_for(p, "finite strain"));
+  {
+    std::vector<double> springs;
+    if (p.has("foundation"))
+      springs = MeshFoundation(*mesh, section_foundation(p, *scene.solid))
+                    .absolute_row_sums();
+    simulation.add(
+        std::make_unique<MeshStepCheck>(*mesh, *finite, damping_factor(p), springs),
+        {Stage::forces}, rank_mesh_step, "finite strain", reason_for(p, "finite strain"));
+  }
   if (p.has("absorbing boundary"))
     simulation.add(
         std::make_unique<AbsorbingBoundary>(

@@ -21,45 +21,7 @@ namespace
 /// Cells below which a thread team costs more than it saves.
 constexpr long smallest_threaded_cells = 500;
 
-using Stiffness = std::array<PlaneVector, 3>;
-
-/// The isotropic part of a plane stiffness: the projection that keeps the resistance to
-/// a change of area, (C_xx + C_yy + 2 C_xy) / 4 = lambda + mu, and the mean over all
-/// directions of that to shear.
-LameConstants isotropic_part(const Stiffness &C)
-{
-  const double area = 0.25 * (C[0][0] + C[1][1] + 2. * C[0][1]);
-  const double shear = 0.125 * (C[0][0] + C[1][1] - 2. * C[0][1] + 4. * C[2][2]);
-  return {area - shear, shear};
-}
-
-Stiffness rest_of(const ElasticMaterial &material)
-{
-  const LameConstants isotropic = isotropic_part(material.stiffness);
-  const Stiffness part = isotropic.plane_stiffness();
-  Stiffness rest = material.stiffness;
-  double largest = 0.;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-    {
-      rest[i][j] -= part[i][j];
-      largest = std::max(largest, std::abs(rest[i][j]));
-    }
-  if (!(isotropic.mu > 0. && isotropic.lambda + isotropic.mu > 0. &&
-        largest <= 0.1 * part[0][0]))
-    throw std::invalid_argument(
-        "material '" + material.name +
-        "': its stiffness differs from an isotropic one by " +
-        std::to_string(100. * largest / part[0][0]) +
-        " %; the law of finite strain is for up to 10 %. Take a larger tile of the "
-        "packing, or small strain.");
-  // Round-off of an isotropic material is none of its own.
-  if (largest < 1e-12 * part[0][0])
-    rest = {};
-  return rest;
-}
-
-PlaneVector product(const Stiffness &C, const PlaneVector &e)
+PlaneVector multiply(const PlaneStiffness &C, const PlaneVector &e)
 {
   PlaneVector result{};
   for (int i = 0; i < 3; ++i)
@@ -67,7 +29,7 @@ PlaneVector product(const Stiffness &C, const PlaneVector &e)
   return result;
 }
 
-double dot(const PlaneVector &a, const PlaneVector &b)
+double contract(const PlaneVector &a, const PlaneVector &b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -104,45 +66,6 @@ double spectral_norm(const std::array<double, 4> &b)
   return std::sqrt(0.5 * sum + root);
 }
 } // namespace
-
-FiniteStrainLaw::FiniteStrainLaw(const ElasticMaterial &material,
-                                 const FiniteElasticity form)
-    : form_(form)
-    , neo_hookean_(isotropic_part(material.stiffness))
-    , semi_linear_(isotropic_part(material.stiffness))
-    , rest_(rest_of(material))
-{
-}
-
-PlaneVector FiniteStrainLaw::stress(const PlaneVector &strain) const
-{
-  const PointStress S = form_ == FiniteElasticity::semi_linear
-                            ? semi_linear_.stress(strain)
-                            : neo_hookean_.stress(strain);
-  const PlaneVector more = product(rest_, strain);
-  return {S.xx + more[0], S.yy + more[1], S.xy + more[2]};
-}
-
-double FiniteStrainLaw::energy(const PlaneVector &strain) const
-{
-  const double isotropic = form_ == FiniteElasticity::semi_linear
-                               ? semi_linear_.energy(strain)
-                               : neo_hookean_.energy(strain);
-  return isotropic + 0.5 * dot(strain, product(rest_, strain));
-}
-
-std::array<PlaneVector, 3> FiniteStrainLaw::tangent(const PlaneVector &strain) const
-{
-  PointInput input;
-  input.strain = strain;
-  Stiffness C = form_ == FiniteElasticity::semi_linear
-                    ? semi_linear_.respond(input, nullptr, nullptr).tangent
-                    : neo_hookean_.respond(input, nullptr, nullptr).tangent;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      C[i][j] += rest_[i][j];
-  return C;
-}
 
 FiniteStrainSolid::FiniteStrainSolid(
     const parallel::distributed::Triangulation<2> &triangulation,
@@ -398,7 +321,7 @@ bool FiniteStrainSolid::tangent(const std::size_t cell,
     if (!is_in_reach(H, E))
       return false;
     const PlaneVector S = law.stress(E);
-    const Stiffness C = law.tangent(E);
+    const PlaneStiffness C = law.tangent(E);
     const double w = weighted_area_[p];
     const double *const g = shape_gradient_.data() + 2 * n_points_ * p;
     const double F[2][2] = {{1. + H.xx, H.xy}, {H.yx, 1. + H.yy}};
@@ -408,17 +331,17 @@ bool FiniteStrainSolid::tangent(const std::size_t cell,
                    F[c][0] * g[2 * k + 1] + F[c][1] * g[2 * k]};
     for (std::size_t k = 0; k < n_points_; ++k)
     {
-      const PlaneVector CBx = product(C, B[k][0]), CBy = product(C, B[k][1]);
+      const PlaneVector CBx = multiply(C, B[k][0]), CBy = multiply(C, B[k][1]);
       const double pull_x = S[0] * g[2 * k] + S[2] * g[2 * k + 1],
                    pull_y = S[2] * g[2 * k] + S[1] * g[2 * k + 1];
       for (std::size_t j = 0; j < n_points_; ++j)
       {
         double *const block = blocks + 4 * (j * n_points_ + k);
         const double geometric = g[2 * j] * pull_x + g[2 * j + 1] * pull_y;
-        block[0] += w * (dot(B[j][0], CBx) + geometric);
-        block[1] += w * dot(B[j][0], CBy);
-        block[2] += w * dot(B[j][1], CBx);
-        block[3] += w * (dot(B[j][1], CBy) + geometric);
+        block[0] += w * (contract(B[j][0], CBx) + geometric);
+        block[1] += w * contract(B[j][0], CBy);
+        block[2] += w * contract(B[j][1], CBx);
+        block[3] += w * (contract(B[j][1], CBy) + geometric);
       }
     }
   }
@@ -479,13 +402,15 @@ Vector FiniteStrainSolid::absolute_row_sums(const Vector &displacement) const
 }
 
 double FiniteStrainSolid::stable_step(const Vector &displacement,
-                                      const Vector &inverse_mass) const
+                                      const Vector &inverse_mass,
+                                      const std::vector<double> &extra) const
 {
   const Vector sums = absolute_row_sums(displacement);
   double squared_frequency = 0.;
   for (std::size_t i = 0; i < sums.locally_owned_size(); ++i)
     squared_frequency =
-        std::max(squared_frequency, sums.begin()[i] * inverse_mass.begin()[i]);
+        std::max(squared_frequency, (sums.begin()[i] + (extra.empty() ? 0. : extra[i])) *
+                                        inverse_mass.begin()[i]);
   squared_frequency =
       Utilities::MPI::max(squared_frequency, dof_handler().get_communicator());
   return squared_frequency > 0. ? 2. / std::sqrt(squared_frequency)

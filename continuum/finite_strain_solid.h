@@ -1,8 +1,7 @@
 #pragma once
 
-#include "continuum/elastic_laws.h"
 #include "continuum/elastic_solid.h"
-#include "continuum/semi_linear_law.h"
+#include "continuum/finite_strain_law.h"
 
 #include <array>
 #include <cstdint>
@@ -10,36 +9,6 @@
 
 namespace antiform::continuum
 {
-/// How the isotropic part of a material goes on from its stiffness at rest.
-enum class FiniteElasticity
-{
-  neo_hookean, ///< resists without bound as J -> 0
-  semi_linear  ///< as bonded grains do: what belongs beside them
-};
-
-/// Elastic law of finite strain with any stiffness at rest, in total Lagrangian form: its
-/// isotropic part is that of a neo-Hookean or semi-linear solid, 1/2 E : R : E the rest R
-/// of it, which turns with the material. S and energy derive from one potential.
-class FiniteStrainLaw
-{
-public:
-  /// \param material its stiffness is that at rest
-  /// Throws std::invalid_argument where R is more than a tenth of the isotropic part: it
-  /// would soften under compression as St Venant and Kirchhoff's solid does.
-  FiniteStrainLaw(const ElasticMaterial &material, FiniteElasticity form);
-
-  /// S [Pa], energy [J/m^3] and dS/dE [Pa] at a Green-Lagrange strain.
-  PlaneVector stress(const PlaneVector &strain) const;
-  double energy(const PlaneVector &strain) const;
-  std::array<PlaneVector, 3> tangent(const PlaneVector &strain) const;
-
-private:
-  FiniteElasticity form_;
-  NeoHookean neo_hookean_;
-  SemiLinear semi_linear_;
-  std::array<PlaneVector, 3> rest_; ///< R [Pa]
-};
-
 /// An elastic body whose strains and rotations may be large, for steps in time
 /// (docs/theory/finite_strain_in_time.md): exact forces, energy and states of
 /// FiniteStrainLaw in each material, weighted as those of the linear body. What it
@@ -75,8 +44,11 @@ public:
   Vector absolute_row_sums(const Vector &displacement) const;
   using ElasticSolid::stable_step;
   /// Rigorous stable step of the body's tangent at @p displacement: omega^2 <= max over
-  /// nodes of the row sums / M_J, the circles of Gershgorin in blocks. Collective.
-  double stable_step(const Vector &displacement, const Vector &inverse_mass) const;
+  /// nodes of the row sums / M_J, the circles of Gershgorin in blocks. @p extra: sums of
+  /// further springs by local dof [N/m], or empty. Collective.
+  double stable_step(const Vector &displacement,
+                     const Vector &inverse_mass,
+                     const std::vector<double> &extra = {}) const;
   /// Length of the shortest edge of a cell, at rest [m]. Collective.
   double smallest_edge() const;
 

@@ -12,10 +12,12 @@ namespace antiform::coupling
 MeshStepCheck::MeshStepCheck(MeshState &state,
                              const continuum::FiniteStrainSolid &solid,
                              const double damping_factor,
+                             std::vector<double> extra_rows,
                              std::function<void()> on_stiff)
     : state_(state)
     , solid_(solid)
     , damping_factor_(damping_factor)
+    , extra_rows_(std::move(extra_rows))
     , on_stiff_(std::move(on_stiff))
     , largest_travel_(travel_share * solid.smallest_edge())
     , looked_at_(solid.make_vector())
@@ -39,8 +41,8 @@ void MeshStepCheck::run(const Stage, const Clock &clock)
   looked_at_ = state_.displacement;
   const auto look = [&]
   {
-    bound_ =
-        damping_factor_ * solid_.stable_step(state_.displacement, state_.inverse_mass);
+    bound_ = damping_factor_ *
+             solid_.stable_step(state_.displacement, state_.inverse_mass, extra_rows_);
   };
   look();
   if (clock.dt > bound_ && on_stiff_)

@@ -22,11 +22,14 @@ public:
   static constexpr double travel_share = 5e-3; ///< of the shortest edge
 
   /// \param damping_factor by what damping shortens the stable step, <= 1 [-]
-  /// \param on_stiff what to do about a step above the bound, then asked again; empty: it
+  /// \param extra_rows row sums of further springs on the mesh (foundation) [N/m], or
+  /// empty \param on_stiff what to do about a step above the bound, then asked again;
+  /// empty: it
   ///                 is refused at once
   MeshStepCheck(MeshState &state,
                 const continuum::FiniteStrainSolid &solid,
                 double damping_factor = 1.,
+                std::vector<double> extra_rows = {},
                 std::function<void()> on_stiff = {});
 
   /// Throws NumericalError on all ranks when the step is above the bound.
@@ -42,6 +45,7 @@ private:
   MeshState &state_;
   const continuum::FiniteStrainSolid &solid_;
   double damping_factor_;
+  std::vector<double> extra_rows_;
   std::function<void()> on_stiff_;
   double largest_travel_;       ///< [m]
   continuum::Vector looked_at_; ///< displacement of the last look

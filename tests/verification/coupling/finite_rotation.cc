@@ -299,9 +299,16 @@ TEST(MeshStepCheck, RefusesAStepThatStrainMakesUnstable)
     EXPECT_DOUBLE_EQ(error.value, dt);
     EXPECT_NEAR(error.limit / model.mesh_step(), 1. / std::sqrt(1.6), 0.1);
   }
+  // Springs beside the mesh count: twice its own sums, a step smaller by sqrt(3).
+  std::vector<double> springs;
+  for (const double sum : solid.absolute_row_sums(m.displacement))
+    springs.push_back(2. * sum);
+  EXPECT_NEAR(solid.stable_step(m.displacement, m.inverse_mass) /
+                  solid.stable_step(m.displacement, m.inverse_mass, springs),
+              std::sqrt(3.), 1e-12);
   // What a scene does about it is done before it is refused.
   int called = 0;
-  MeshStepCheck mending(m, solid, 1.,
+  MeshStepCheck mending(m, solid, 1., {},
                         [&]
                         {
                           ++called;
