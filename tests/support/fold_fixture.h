@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace antiform::coupling::test
