@@ -34,6 +34,7 @@ std::vector<Effect> list_effects(const Parameters &p)
   bool layer_breaks = false;
   for (int bed = 0; bed < p.n_beds(); ++bed)
     layer_breaks |= p.bed(bed).joint.breakable;
+  const bool events = p.follows_events();
   const bool breakable = grains && (layer_breaks || (matrix && p.matrix.breakable));
   const bool slips = grains && matrix && p.matrix.interface == "frictionless";
   const bool beside = grains && discrete::has_contact_beside(p.layer.law());
@@ -54,7 +55,11 @@ std::vector<Effect> list_effects(const Parameters &p)
           ? at_breakage("friction", "broken elements close and slide")
           : Effect{"friction", State::absent,
                    "nothing is left of a broken bond but the grains' contact"});
-  if (beside)
+  if (events)
+    for (const std::string name : {"contacts", "search"})
+      list.push_back({name, Effect::State::absent,
+                      "the event driver knows joints and walls, no loose grains"});
+  else if (beside)
   {
     const std::string why = "the grains' contacts act beside the parallel bonds";
     list.push_back({"contacts", State::present, why});
@@ -128,8 +133,9 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("creep", any([](const auto &m) { return m.law == "Maxwell"; }),
                         "finite elements of a viscous law",
                         "no finite elements have a viscous law"));
-  const bool steps = p.run.steps_in_time();
-  const std::string no_steps = "the " + p.run.driver + " driver takes no steps in time";
+  const bool steps = p.run.steps_in_time() && !events;
+  const std::string no_steps = "the " + (events ? std::string("event") : p.run.driver) +
+                               " driver takes no steps in time";
   list.push_back(choose("motion of the grains", grains && steps,
                         "the grains step in time",
                         grains ? no_steps : "nothing is grains"));
@@ -137,14 +143,17 @@ std::vector<Effect> list_effects(const Parameters &p)
                         "damping and the record of equilibrium need it", no_steps));
   list.push_back(choose("load steps", p.has("walls") && p.walls.steps_and_relaxes(),
                         "the walls wait for the forces to balance",
-                        "walls at a constant rate, or none"));
+                        events ? no_steps : "walls at a constant rate, or none"));
+  list.push_back(choose("event driver", events, "'Walls/Loading' asks for it",
+                        "the walls move in time, or there are none"));
   list.push_back(
-      choose("record", steps, "history, cracks and fields", "written after each solve"));
+      choose("record", steps || events, "history, cracks and fields", "written after each solve"));
   list.push_back(choose("measurement circles", p.has("measurement circles"),
                         "listed in Components", "not listed in Components"));
-  list.push_back(choose("density scaling", p.run.driver == "quasi-static",
+  list.push_back(choose("density scaling", p.run.driver == "quasi-static" && !events,
                         "quasi-static driver: inertia is free to choose",
-                        "only the quasi-static driver may scale densities"));
+                        events ? no_steps
+                               : "only the quasi-static driver may scale densities"));
   return list;
 }
 

@@ -420,6 +420,7 @@ std::vector<Finding> check_parameters(const Parameters &p)
   if (p.is_bridged())
     check_bridging(p, findings);
   check_run(p, findings);
+  check_event_driver(p, findings);
   check_materials(p, findings);
   if (p.has("layer"))
     check_solid_scene(p, findings);

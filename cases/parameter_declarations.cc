@@ -143,17 +143,24 @@ void declare(WallsParameters &walls, Declarations &entries)
   entries.choice("Loading", walls.loading,
                  "constant rate: the walls move all the time; step and relax: they "
                  "advance by load steps, each in one transit, and stand still after "
-                 "each until the forces balance.",
-                 "constant rate|step and relax");
+                 "each until the forces balance; event driver: no time at all, from the "
+                 "balance at one event (bonds that break) to that at the next few, for "
+                 "flat joints of grains alone.",
+                 "constant rate|step and relax|event driver");
   entries.number("Load step", walls.load_step,
                  "Step and relax: shortening in one load step; some 2 % of that at the "
-                 "peak [-].",
+                 "peak. Event driver: the longest one [-].",
                  Number::above(0.).below(0.1));
   entries.number("Relaxation tolerance", walls.relaxation_tolerance,
                  "Step and relax: mean unbalanced force over the mean force of a joint "
                  "below which the walls go on, the largest below 0.1; ten times it when a "
                  "collapse has taken 100 transits [-].",
                  Number::above(0.).below(0.1));
+  entries.number("Balance tolerance", walls.balance_tolerance,
+                 "Event driver: mean unbalanced force over the mean force of a joint that "
+                 "counts as balance; the largest one is to be below 100 times it, and "
+                 "below 150 times it of what an element carries when it breaks [-].",
+                 Number::above(0.).below(0.01));
   entries.number("Ramp", walls.ramp, "Transits in which the walls come up to speed [-].",
                  Number::at_least(0.));
   entries.choice(
@@ -263,7 +270,8 @@ void declare(RunParameters &run, Declarations &entries)
   entries.flag("Estimate loading-rate error", run.estimate_rate_error,
                "Drivers in time: after the run, repeat the last stretch before the peak "
                "at half the loading rate (walls that step and relax: half the load step and "
-               "tolerance) and print how far the peak moves.");
+               "tolerance; event driver: half the tolerance) and print how far the peak "
+               "moves.");
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",
                 Number::at_least(1.));

@@ -163,8 +163,9 @@ struct GravityParameters
 /// End walls: rigid, frictionless, over the full height; both move inward.
 struct WallsParameters
 {
-  std::string loading = "constant rate"; ///< constant rate | step and relax
-  double load_step = 4e-5;               ///< shortening of one, step and relax [-]
+  std::string loading = "constant rate"; ///< constant rate | step and relax | event driver
+  double load_step = 4e-5; ///< shortening of one, step and relax; the largest, events [-]
+  double balance_tolerance = 1e-3; ///< mean unbalanced ratio, event driver [-]
   double relaxation_tolerance = 1e-4;    ///< unbalanced ratio, step and relax [-]
   double transits_per_millistrain = 300.; ///< axial wave transits of the layer per 1e-3
   double ramp = 20.;            ///< transits over which the walls come up to speed
@@ -172,6 +173,7 @@ struct WallsParameters
   double grip_layers = 7.5;     ///< width of a grip over the mean grain diameter
 
   bool steps_and_relaxes() const { return loading == "step and relax"; }
+  bool follows_events() const { return loading == "event driver"; }
 };
 
 /// A pressure on the sides of a specimen, and on its ends before they shorten it.
@@ -326,6 +328,8 @@ struct Parameters
   bool has_contacts_from_start() const;
   /// What confines the specimen; null: nothing.
   const ConfinementParameters *confinement() const;
+  /// From one state of balance to the next, not in time (coupling::EventDriver).
+  bool follows_events() const { return has("walls") && walls.follows_events(); }
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
   /// The parts of the section that are finite elements alone.

@@ -2,6 +2,7 @@
 #include "cases/program.h"
 
 #include "cases/deck_reader.h"
+#include "cases/event_run.h"
 #include "cases/output_directory.h"
 #include "cases/run_deck.h"
 #include "cases/run_log.h"
@@ -16,6 +17,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 namespace antiform::cases
@@ -74,14 +76,17 @@ int run(const Parameters &parameters,
     return run_static(parameters, options, log, communicator);
   if (parameters.run.driver == "buckling")
     return run_buckling(parameters, options, log, communicator);
-  SteppedRun stepped(parameters, options, log, communicator);
+  const std::unique_ptr<SteppedRun> stepped =
+      parameters.follows_events()
+          ? std::make_unique<EventRun>(parameters, options, log, communicator)
+          : std::make_unique<SteppedRun>(parameters, options, log, communicator);
   try
   {
-    return stepped(state ? &*state : nullptr);
+    return (*stepped)(state ? &*state : nullptr);
   }
   catch (const NumericalError &error)
   {
-    return stepped.fail(error.what());
+    return stepped->fail(error.what());
   }
   catch (const InputError &)
   {
@@ -89,7 +94,7 @@ int run(const Parameters &parameters,
   }
   catch (const std::exception &error)
   {
-    return stepped.fail(error.what());
+    return stepped->fail(error.what());
   }
 }
 } // namespace antiform::cases

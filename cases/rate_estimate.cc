@@ -14,21 +14,39 @@ namespace antiform::cases
 {
 namespace fs = std::filesystem;
 
+std::string Halving::words() const
+{
+  return is_of_tolerance ? "half the tolerance" : "half the rate";
+}
+
+std::string Halving::directory() const
+{
+  return is_of_tolerance ? "half-tolerance" : "half-rate";
+}
+
 void RateEstimate::fill(Summary &summary) const
 {
-  summary.results["peak_stress_at_half_rate"] = {peak_at_half_rate, "Pa"};
-  summary.results["loading_rate_error"] = {change(), "-"};
+  const bool of_tolerance = halving.is_of_tolerance;
+  summary.results[of_tolerance ? "peak_stress_at_half_tolerance"
+                               : "peak_stress_at_half_rate"] = {peak_at_half, "Pa"};
+  summary.results[of_tolerance ? "tolerance_error" : "loading_rate_error"] = {change(),
+                                                                              "-"};
 }
 
 Parameters at_half_rate(const Parameters &parameters)
 {
   Parameters half = parameters;
-  half.title += ", at half the rate";
+  half.title += ", at " + Halving(parameters).words();
   half.run.estimate_rate_error = false;
-  half.walls.transits_per_millistrain *= 2.;
-  half.output.samples_per_millistrain *= 2;
-  half.walls.load_step *= 0.5;
-  half.walls.relaxation_tolerance *= 0.5;
+  if (Halving(parameters).is_of_tolerance)
+    half.walls.balance_tolerance *= 0.5;
+  else
+  {
+    half.walls.transits_per_millistrain *= 2.;
+    half.output.samples_per_millistrain *= 2;
+    half.walls.load_step *= 0.5;
+    half.walls.relaxation_tolerance *= 0.5;
+  }
   half.run.stress_ratio_of_peak = std::max(0.9, half.run.stress_ratio_of_peak);
   return half;
 }

@@ -10,19 +10,32 @@ namespace antiform::cases
 {
 struct Summary;
 
+/// What is halved: the loading rate; or, without time, the tolerance of balance.
+struct Halving
+{
+  explicit Halving(const Parameters &parameters)
+      : is_of_tolerance(parameters.follows_events())
+  {
+  }
+  bool is_of_tolerance;
+  std::string words() const; ///< "half the rate"
+  std::string directory() const; ///< of the repetition, within that of the run
+};
+
 /// What a run at half the loading rate, from shortly before the peak on, has changed.
 struct RateEstimate
 {
-  double peak = 0.;              ///< largest stress at the deck's rate [Pa]
-  double peak_at_half_rate = 0.; ///< [Pa]
+  Halving halving;
+  double peak = 0.;         ///< largest stress at the deck's rate or tolerance [Pa]
+  double peak_at_half = 0.; ///< [Pa]
 
   /// Positive where the faster run was the stronger [-].
-  double change() const { return peak / peak_at_half_rate - 1.; }
+  double change() const { return peak / peak_at_half - 1.; }
   void fill(Summary &summary) const;
 };
 
-/// Deck of the repetition: half the rate, or half the load step and relaxation tolerance;
-/// ends once the stress has fallen by a tenth.
+/// Deck of the repetition: half the rate, half the load step and relaxation tolerance, or
+/// half the event driver's tolerance; ends once the stress has fallen by a tenth.
 Parameters at_half_rate(const Parameters &parameters);
 
 /// The states of the last rises of the stress by a tenth, each a checkpoint of the run at

@@ -2,6 +2,7 @@
 
 #include "cases/field_output.h"
 #include "cases/fracture_record.h"
+#include "cases/scene_events.h"
 #include "continuum/errors.h"
 
 #include <algorithm>
@@ -69,6 +70,8 @@ std::vector<std::string> Recorder::columns() const
   if (specimen_)
     names.insert(names.end(), SpecimenRecord::columns().begin(),
                  SpecimenRecord::columns().end());
+  if (scene_.events != nullptr)
+    names.insert(names.end(), {"largest_unbalanced_ratio", "unbalanced_over_strength"});
   return names;
 }
 
@@ -101,9 +104,9 @@ Recorder::Sample Recorder::measure() const
     sample.axial_stress = layer / g.thickness();
     sample.matrix_share = sample.wall_force != 0. ? matrix / sample.wall_force : 0.;
   }
-  if (scene_.grips != nullptr)
+  if (scene_.pulls())
   {
-    sample.wall_force = -scene_.grips->tension();
+    sample.wall_force = -scene_.tension();
     sample.axial_stress = sample.wall_force / g.thickness();
   }
   sample.strain = scene_.loading_sign() * sample.shortening;
@@ -125,7 +128,7 @@ void Recorder::run(const Stage, const Clock &clock)
     *term = over_ranks(*term);
   if (strain_.empty())
     strain_origin_ = energies_.strain_grains + energies_.strain_continuum;
-  ratio_ = scene_.constrained->unbalanced_ratio();
+  ratio_ = scene_.unbalanced_ratio();
   if (!std::isfinite(energies_.stored_and_spent()) || !std::isfinite(sample.wall_force))
     throw NumericalError("simulation",
                          "energy or wall force is not a number: the run is unstable. "
@@ -195,6 +198,11 @@ void Recorder::append_history(const Clock &clock, const Sample &sample)
                              energies_.damping,
                              energies_.fracture};
   values.insert(values.end(), sample.gauges.begin(), sample.gauges.end());
+  if (scene_.events != nullptr)
+  {
+    const coupling::BalanceRatios ratios = scene_.events->ratios();
+    values.insert(values.end(), {ratios.largest, ratios.of_strength});
+  }
   history_->append(values);
 }
 
@@ -236,8 +244,12 @@ void Recorder::look_for_end(const Sample &sample)
       scene_.load_steps != nullptr
           ? scene_.parameters.walls.load_step
           : 1e-3 / scene_.parameters.output.samples_per_millistrain;
-  const double fallen = std::max(fallen_transits * transit, fallen_samples * between);
-  if (run.stress_ratio_of_peak > 0. && sample.strain - last_high_strain_ >= fallen)
+  // What is recorded of events is in balance, and a stress that has fallen has.
+  const double fallen = scene_.events != nullptr
+                            ? 0.
+                            : std::max(fallen_transits * transit, fallen_samples * between);
+  if (sample.stress < run.stress_ratio_of_peak * peak_stress_ &&
+      sample.strain - last_high_strain_ >= fallen)
     why_finished_ = "the wanted share of the peak stress";
   const bool peaked = peak_strain_ > 0. && sample.strain - peak_strain_ >= settled;
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
@@ -307,7 +319,7 @@ void Recorder::fill(Summary &summary) const
   const SectionGeometry &g = scene_.geometry;
   auto &results = summary.results;
   results["shortening"] = {last_.shortening, "-"};
-  results[scene_.grips != nullptr ? "tensile_strength" : "peak_stress"] = {peak_stress_,
+  results[scene_.pulls() ? "tensile_strength" : "peak_stress"] = {peak_stress_,
                                                                            "Pa"};
   results["strain_at_peak"] = {peak_strain_, "-"};
   results["unbalanced_ratio"] = {ratio_, "-"};
@@ -342,8 +354,10 @@ void Recorder::fill(Summary &summary) const
     }
     const auto &would = scene_.grains->state.joints.would_break;
     const auto n_would = std::count(would.begin(), would.end(), 1);
-    results["unbreakable_joints_over_strength"] = {static_cast<double>(n_would), "-"};
+    if (scene_.events == nullptr) // which looks at joints that break only
+      results["unbreakable_joints_over_strength"] = {static_cast<double>(n_would), "-"};
   }
+  report_events(scene_, summary);
   if (const coupling::StepAndRelax *const loading = scene_.load_steps)
   {
     results["load_steps"] = {static_cast<double>(loading->n_load_steps()), "-"};

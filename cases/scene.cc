@@ -3,6 +3,7 @@
 #include "cases/inertia.h"
 #include "cases/mesh_strips.h"
 #include "cases/scene_components.h"
+#include "cases/scene_events.h"
 #include "cases/section_contacts.h"
 #include "cases/section_foundation.h"
 #include "cases/section_materials.h"
@@ -130,10 +131,22 @@ MPI_Comm Scene::communicator() const
 
 double Scene::shortening() const
 {
+  if (events != nullptr)
+    return loading_sign() * events->load();
   if (grips != nullptr)
     return -grips->extension() /
            (geometry.length() - 2. * parameters.walls.grip_layers * geometry.diameter());
   return wall_motion != nullptr ? wall_motion->closure() / geometry.length() : 0.;
+}
+
+double Scene::tension() const
+{
+  return events != nullptr ? events->force() : grips->tension();
+}
+
+double Scene::unbalanced_ratio() const
+{
+  return events != nullptr ? events->ratios().mean : constrained->unbalanced_ratio();
 }
 
 void Scene::visit_state(coupling::StateArchive &archive)
@@ -180,6 +193,13 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
     GrainSection none;
     none.mean_radius = 0.5 * p.grain_diameter();
     scene->walls = make_walls(none, scene->geometry);
+  }
+
+  if (p.follows_events())
+  {
+    scene->simulation = std::make_unique<Simulation>(0.); // without time
+    add_event_loading(*scene);
+    return scene;
   }
 
   std::vector<double> foundation_rows;

@@ -6,6 +6,7 @@
 #include "cases/parameters.h"
 #include "continuum/elastic_solid.h"
 #include "coupling/bridging_domain.h"
+#include "coupling/event_loading.h"
 #include "coupling/grain_components.h"
 #include "coupling/joining_components.h"
 #include "coupling/membrane_load.h"
@@ -54,6 +55,7 @@ struct Scene
   coupling::Grips *grips = nullptr;
   coupling::MembraneLoad *membrane = nullptr;
   coupling::StepAndRelax *load_steps = nullptr; ///< null at a constant rate
+  coupling::EventLoading *events = nullptr; ///< null where the scene steps in time
 
   coupling::ConstrainedForces *constrained = nullptr;
   bool breakage_components = false; ///< friction, contacts and search have joined
@@ -66,7 +68,13 @@ struct Scene
   /// the grips [-].
   double shortening() const;
   /// 1 where the section is shortened, -1 where it is extended: what grows.
-  double loading_sign() const { return grips != nullptr ? -1. : 1.; }
+  double loading_sign() const { return pulls() ? -1. : 1.; }
+  /// By grips.
+  bool pulls() const { return parameters.has("walls") && parameters.walls.action == "pull"; }
+  /// Mean of the forces with which the grips pull [N].
+  double tension() const;
+  /// Mean unbalanced force over the mean force of a joint, of the last record [-].
+  double unbalanced_ratio() const;
   MPI_Comm communicator() const;
   /// Friction, contacts and search, which the first broken bond calls for.
   void add_breakage_components();

@@ -75,6 +75,20 @@ std::vector<GrainBase::Support> base_supports(const Scene &scene)
   return supports;
 }
 
+std::array<std::vector<std::int32_t>, 2> gripped_grains(const Scene &scene)
+{
+  const discrete::Grains &grains = scene.grains->state.grains;
+  const SectionGeometry &g = scene.geometry;
+  const double width = scene.parameters.walls.grip_layers * g.diameter();
+  std::array<std::vector<std::int32_t>, 2> held;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (grains.reference_x[i] < g.x_min() + width)
+      held[0].push_back(static_cast<std::int32_t>(i));
+    else if (grains.reference_x[i] > g.x_max() - width)
+      held[1].push_back(static_cast<std::int32_t>(i));
+  return held;
+}
+
 void add_grain_components(Scene &scene)
 {
   const Parameters &p = scene.parameters;
@@ -216,20 +230,6 @@ void add_confinement(Scene &scene, const double fastest)
                                                      speed_on(scene.geometry.length())),
                         {Stage::forces, Stage::drift}, rank_walls, "servo walls",
                         reason_for(scene.parameters, "servo walls"));
-}
-
-std::array<std::vector<std::int32_t>, 2> gripped_grains(const Scene &scene)
-{
-  const discrete::Grains &grains = scene.grains->state.grains;
-  const SectionGeometry &g = scene.geometry;
-  const double width = scene.parameters.walls.grip_layers * g.diameter();
-  std::array<std::vector<std::int32_t>, 2> held;
-  for (std::size_t i = 0; i < grains.size(); ++i)
-    if (grains.reference_x[i] < g.x_min() + width)
-      held[0].push_back(static_cast<std::int32_t>(i));
-    else if (grains.reference_x[i] > g.x_max() - width)
-      held[1].push_back(static_cast<std::int32_t>(i));
-  return held;
 }
 
 /// Each wall advances in one transit, so that the wave it sends is no steeper than the

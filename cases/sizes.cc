@@ -20,6 +20,8 @@ constexpr double transits_per_load_step = 4.;
 // factor of two or so on a machine of the same years.
 constexpr double grain_steps_per_second = 9e6;
 constexpr double dof_steps_per_second = 18e6;
+/// Of the event driver through the peak, over the number of grains to the power 3/2.
+constexpr double seconds_of_events = 6e-5;
 
 // Grains per d^2: solid fraction 0.845 over pi/4 <d^2>/<d>^2 (radius ratio 1.66: 1.02).
 constexpr double grains_per_square_diameter = 0.845 / (0.25 * M_PI * 1.02);
@@ -177,7 +179,12 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
       sizes.cells *= std::pow(growth_by_refinement(p), p.matrix.refinement_rounds);
     sizes.dofs = 2. * sizes.cells * p.matrix.element_degree * p.matrix.element_degree;
   }
-  if (p.has("walls") && p.run.steps_in_time())
+  if (p.follows_events())
+  {
+    sizes.steps = predict_shortening(p, g) / (0.6 * p.walls.load_step);
+    sizes.core_seconds = seconds_of_events * std::pow(sizes.grains, 1.5);
+  }
+  else if (p.has("walls") && p.run.steps_in_time())
   {
     // Steps in which a wave passes a mean grain, of packings with this spread of sizes,
     // measured: scaled to the least step of a matrix, to the mean of a bare layer. Smooth

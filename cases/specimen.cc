@@ -156,7 +156,7 @@ void SpecimenRecord::fill(const Scene &scene,
 {
   auto &results = summary.results;
   const ConfinementParameters *const confinement = scene.parameters.confinement();
-  if (scene.grips == nullptr)
+  if (!scene.pulls())
     results["confining_pressure"] = {
         confinement == nullptr ? 0. : confinement->pressure, "Pa"};
   if (confinement != nullptr && off_pressure_ > 0.02)
@@ -188,7 +188,7 @@ void SpecimenRecord::fill(const Scene &scene,
       most = axial_strain_[k] + lateral_strain_[k];
       smallest = k;
     }
-  if (scene.grips == nullptr)
+  if (!scene.pulls())
     results["crack_damage_stress"] = {stress_[smallest], "Pa"};
 }
 

@@ -183,43 +183,59 @@ void SteppedRun::describe()
               (s.bridging
                    ? ", " + std::to_string(s.bridging->n_multipliers()) + " multipliers"
                    : ""));
+  if (const std::string loading = loading_in_words(); !loading.empty())
+    log_.line(loading);
+}
+
+std::string SteppedRun::loading_in_words() const
+{
+  const Scene &s = *scene_;
   const double dt = s.simulation->clock().dt;
-  if (s.shortening_rate > 0.)
-    log_.line("step " + coupling::shortest_text(dt) + " s, " +
-              std::to_string(std::llround(s.transit_time / dt)) +
-              " steps an axial transit, " +
-              (s.load_steps != nullptr
-                   ? "walls that wait for balance after each load step"
-                   : std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
-                         " steps per 1e-3 of shortening"));
+  if (!(s.shortening_rate > 0.))
+    return "";
+  return "step " + coupling::shortest_text(dt) + " s, " +
+         std::to_string(std::llround(s.transit_time / dt)) + " steps an axial transit, " +
+         (s.load_steps != nullptr
+              ? "walls that wait for balance after each load step"
+              : std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
+                    " steps per 1e-3 of shortening");
+}
+
+SteppedRun::Pause
+SteppedRun::wish_of_this_rank(const Timer::time_point last_checkpoint) const
+{
+  if (options_.time_limit > 0. && seconds_since(begin_) > options_.time_limit)
+    return Pause::out_of_time;
+  if (interrupt_signal() != 0)
+    return Pause::interrupted;
+  return seconds_since(last_checkpoint) > 60. * parameters_.output.checkpoint_minutes
+             ? Pause::checkpoint
+             : Pause::none;
 }
 
 SteppedRun::Pause
 SteppedRun::agree_on_pause(const Timer::time_point last_checkpoint) const
 {
-  Pause wish = Pause::none;
-  if (seconds_since(last_checkpoint) > 60. * parameters_.output.checkpoint_minutes)
-    wish = Pause::checkpoint;
-  if (interrupt_signal() != 0)
-    wish = Pause::interrupted;
-  if (options_.time_limit > 0. && seconds_since(begin_) > options_.time_limit)
-    wish = Pause::out_of_time;
-  return static_cast<Pause>(
-      dealii::Utilities::MPI::max(static_cast<int>(wish), communicator_));
+  return static_cast<Pause>(dealii::Utilities::MPI::max(
+      static_cast<int>(wish_of_this_rank(last_checkpoint)), communicator_));
 }
 
-void SteppedRun::report_progress(const Timer::time_point stepping,
-                                 const std::int64_t first_step,
-                                 const double first_share)
+void SteppedRun::report_progress()
 {
   const coupling::Clock &clock = scene_->simulation->clock();
-  const double elapsed = seconds_since(stepping), share = recorder_->share_done();
+  const double elapsed = seconds_since(beginning_.time), share = recorder_->share_done();
   log_.progress(share, clock.step,
-                share > first_share && elapsed > 0.
-                    ? elapsed * (1. - share) / (share - first_share)
+                share > beginning_.share && elapsed > 0.
+                    ? elapsed * (1. - share) / (share - beginning_.share)
                     : -1.,
                 scene_->grains ? scene_->grains->state.cracks.size() : 0,
-                static_cast<double>(clock.step - first_step) / elapsed);
+                static_cast<double>(clock.step - beginning_.step) / elapsed);
+}
+
+std::unique_ptr<SteppedRun> SteppedRun::another(const Parameters &parameters,
+                                                const RunOptions &options) const
+{
+  return std::make_unique<SteppedRun>(parameters, options, log_, communicator_);
 }
 
 int SteppedRun::estimate_rate_error()
@@ -235,29 +251,30 @@ int SteppedRun::estimate_rate_error()
   }
   const Parameters deck = at_half_rate(parameters_);
   RunOptions options = options_;
-  options.output += "/half-rate";
+  const Halving halving(parameters_);
+  options.output += "/" + halving.directory();
   options.resume = true;
   if (options.time_limit > 0.)
     options.time_limit = std::max(1e-3, options.time_limit - seconds_since(begin_));
-  log_.line("again at half the rate, from " + coupling::shortest_text(from) + " Pa on");
+  log_.line("again at " + halving.words() + ", from " + coupling::shortest_text(from) + " Pa on");
   if (!std::filesystem::exists(options.output + "/state.h5"))
     begin_from(before_peak_->file_before(peak), options_.output, deck, options.output);
   std::optional<coupling::StateReader> state = open_state(deck, options, communicator_);
-  SteppedRun half(deck, options, log_, communicator_);
+  const std::unique_ptr<SteppedRun> half = another(deck, options);
   try
   {
-    if (const int status = half(&*state); status != 0)
+    if (const int status = (*half)(&*state); status != 0)
       return status;
   }
   catch (const NumericalError &error) // the run itself has ended well
   {
-    half.fail(error.what());
+    half->fail(error.what());
     no_estimate_ =
         "there is no estimate of the loading-rate error, its run has failed: " +
         std::string(error.what());
     return 0;
   }
-  rate_estimate_ = RateEstimate{peak, half.recorder_->peak_stress()};
+  rate_estimate_ = RateEstimate{halving, peak, half->recorder_->peak_stress()};
   before_peak_->remove_files();
   return 0;
 }
@@ -273,37 +290,45 @@ int SteppedRun::step_to_end()
   if (!options_.resume)
     checkpoint();
   coupling::Simulation &simulation = *scene_->simulation;
-  const std::int64_t first_step = simulation.clock().step;
-  const double first_share = recorder_->share_done();
+  beginning_ = {Timer::now(), simulation.clock().step, recorder_->share_done()};
   Timer::time_point last_checkpoint = Timer::now();
-  const Timer::time_point stepping = Timer::now();
   while (!recorder_->finished())
   {
-    simulation.step();
-    if (simulation.clock().step % 64 != 0)
+    if (const Pause reason = advance(); reason != Pause::none)
+      return pause(reason);
+    if (simulation.clock().step % steps_between_looks() != 0)
       continue;
-    const Pause pause = agree_on_pause(last_checkpoint);
-    if (pause != Pause::none)
+    const Pause reason = agree_on_pause(last_checkpoint);
+    if (reason != Pause::none)
     {
       checkpoint();
       last_checkpoint = Timer::now();
     }
-    if (pause == Pause::interrupted || pause == Pause::out_of_time)
-    {
-      log_.line(std::string(pause == Pause::out_of_time ? "time limit reached"
-                                                        : "interrupted") +
-                ": checkpoint written, continue with --resume");
-      return 3;
-    }
+    if (reason == Pause::interrupted || reason == Pause::out_of_time)
+      return pause(reason);
     if (before_peak_)
       keep_state_before_peak();
     if (log_.is_due())
-      report_progress(stepping, first_step, first_share);
+      report_progress();
   }
   recorder_->write_fields();
   checkpoint();
   log_.line("ended at " + recorder_->why_finished());
   return 0;
+}
+
+SteppedRun::Pause SteppedRun::advance()
+{
+  scene_->simulation->step();
+  return Pause::none;
+}
+
+int SteppedRun::pause(const Pause reason) const
+{
+  log_.line(std::string(reason == Pause::out_of_time ? "time limit reached"
+                                                     : "interrupted") +
+            ": checkpoint written, continue with --resume");
+  return 3;
 }
 
 void SteppedRun::describe_scene(Summary &summary) const

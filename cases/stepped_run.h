@@ -30,6 +30,9 @@ public:
              const RunOptions &options,
              RunLog &log,
              MPI_Comm communicator);
+  virtual ~SteppedRun() = default;
+  SteppedRun(const SteppedRun &) = delete;
+  SteppedRun &operator=(const SteppedRun &) = delete;
 
   /// Build the scene, load @p state unless null, step to the end, write the summary.
   /// \return exit status: 0 done, 3 interrupted with a checkpoint
@@ -39,13 +42,8 @@ public:
   /// \return exit status
   int fail(const std::string &reason);
 
-private:
+protected:
   using Timer = std::chrono::steady_clock;
-  /// What a resumed run needs of the time before it.
-  struct Past
-  {
-    double wall_seconds = 0., cpu_seconds = 0.;
-  };
   enum class Pause
   {
     none,
@@ -54,7 +52,33 @@ private:
     out_of_time
   };
 
+  /// One step of the simulation. \return none; or why it was given up, the checkpoint
+  /// being written then
+  virtual Pause advance();
+  /// Steps between two looks at clocks and signals.
+  virtual int steps_between_looks() const { return 64; }
+  /// Of the loading, for the log.
+  virtual std::string loading_in_words() const;
+  /// A run of the same kind, for the estimate of its error.
+  virtual std::unique_ptr<SteppedRun> another(const Parameters &parameters,
+                                              const RunOptions &options) const;
+
   void visit_state(coupling::StateArchive &archive);
+  Pause wish_of_this_rank(Timer::time_point last_checkpoint) const;
+  void report_progress();
+
+  const Parameters &parameters_;
+  const RunOptions &options_;
+  MPI_Comm communicator_;
+  RunLog &log_;
+  std::unique_ptr<Scene> scene_;
+
+private:
+  /// What a resumed run needs of the time before it.
+  struct Past
+  {
+    double wall_seconds = 0., cpu_seconds = 0.;
+  };
   /// All but the deck and what belongs to the estimate.
   void visit_physics(coupling::StateArchive &archive);
   double cpu_seconds() const; ///< since this run was begun
@@ -63,10 +87,8 @@ private:
   void describe();
   /// The most urgent wish of any rank: signals and clocks reach them apart.
   Pause agree_on_pause(Timer::time_point last_checkpoint) const;
-  void report_progress(Timer::time_point stepping,
-                       std::int64_t first_step,
-                       double first_share);
   int step_to_end();
+  int pause(Pause reason) const; ///< \return exit status
   /// The last stretch before the peak at half the rate. \return exit status
   int estimate_rate_error();
   /// Sizes, and the calls that the loop has counted. Without a scene (its making failed)
@@ -75,14 +97,16 @@ private:
   void finish(const std::string &status);
   void print_results(const Summary &summary);
 
-  const Parameters &parameters_;
-  const RunOptions &options_;
-  MPI_Comm communicator_;
-  RunLog &log_;
   std::string deck_; ///< as the run began: the files that it names may change later
   Timer::time_point begin_;
   double cpu_before_; ///< of the process, when this run was begun [s]
-  std::unique_ptr<Scene> scene_;
+  /// Where stepping began, for the progress.
+  struct Beginning
+  {
+    Timer::time_point time;
+    std::int64_t step = 0;
+    double share = 0.;
+  } beginning_;
   Recorder *recorder_ = nullptr;
   Past past_;
   std::optional<StatesBeforePeak> before_peak_; ///< only where the deck wants an estimate

@@ -40,15 +40,21 @@ bool EventDriver::run_to(const double target)
 {
   while (true)
   {
-    balance();
-    add_record();
+    const LoadRecord &record = find_balance();
     if (settings_.stop_drop > 0. &&
-        report_.records.back().force < (1. - settings_.stop_drop) * largest_force_)
+        record.force < (1. - settings_.stop_drop) * largest_force_)
       return false;
     if (load_ == target)
       return true;
     step_towards(target);
   }
+}
+
+const LoadRecord &EventDriver::find_balance()
+{
+  balance();
+  add_record();
+  return report_.records.back();
 }
 
 /// At the present load: break and correct by turns until nothing is left to do.
@@ -133,6 +139,7 @@ void EventDriver::hand_over()
 void EventDriver::step_towards(const double target)
 {
   const double sign = target > load_ ? 1. : -1.;
+  evaluate(); // as one that goes on from a checkpoint must
   const double left = std::abs(target - load_), size = step_size(sign);
   ++report_.load_steps;
   move(sign * std::min(size, left) * body_.tangent(), sign * std::min(size, left));
@@ -167,6 +174,12 @@ double EventDriver::step_size(const double sign)
     std::nth_element(steps.begin(), wanted, steps.end());
     size = std::min(size, *wanted + beyond);
   }
+  // Record the whole body once shortly before its first break.
+  const double short_by = 0.01 * settings_.largest_step;
+  if (state_.cracks.empty() && !steps.empty())
+    if (const double first = *std::min_element(steps.begin(), steps.end());
+        first > 2. * short_by)
+      size = std::min(size, first - short_by);
   return size;
 }
 
@@ -193,6 +206,26 @@ void EventDriver::evaluate()
 bool EventDriver::is_balanced() const
 {
   return body_.ratios().within(settings_.limits);
+}
+
+void EventDriver::visit_state(StateArchive &archive)
+{
+  archive.value("event_driver/load", load_);
+  archive.value("event_driver/largest_force", largest_force_);
+  archive.value("event_driver/work", work_);
+  archive.value("event_driver/held", held_);
+  archive.value("event_driver/least_held", report_.least_held);
+  std::vector<std::int64_t *> counts{
+      &report_.load_steps, &report_.solves,     &report_.evaluations,
+      &report_.batches,    &report_.breaks,     &report_.hand_overs,
+      &report_.explicit_steps, &report_.most_corrections};
+  std::vector<std::int64_t> values;
+  for (const std::int64_t *count : counts)
+    values.push_back(*count);
+  archive.array("event_driver/counts", values);
+  if (archive.is_loading())
+    for (std::size_t k = 0; k < counts.size(); ++k)
+      *counts[k] = values[k];
 }
 
 void EventDriver::add_record()

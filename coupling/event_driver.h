@@ -88,6 +88,14 @@ public:
   /// fallen by the stop's share below the largest one so far, and the run ended there
   bool run_to(double target);
 
+  /// Balance the body at the present load and record it.
+  const LoadRecord &find_balance();
+  /// Change the load by one step towards @p target, elastically; a balance is to follow.
+  void step_towards(double target);
+  /// Load, books and counts, between the two; not the records. The same path follows
+  /// from a body in the same state.
+  void visit_state(StateArchive &archive);
+
   double load() const { return load_; }
   const DriverReport &report() const { return report_; }
   /// Largest force of a record so far [J].
@@ -98,7 +106,6 @@ private:
   void break_batch(const std::vector<discrete::LoadedElement> &over);
   void correct(int corrections);
   void hand_over();
-  void step_towards(double target);
   double step_size(double sign);
   void move(const Eigen::VectorXd &increment, double load_step);
   void evaluate();

@@ -42,11 +42,20 @@ Eigen::Index index(const std::size_t grain, const unsigned int component)
 GrainBalance::GrainBalance(GrainState &state,
                            const std::vector<PrescribedMotion> &prescribed,
                            std::vector<GrainLoad> loads)
+    : GrainBalance(state, prescribed, std::move(loads), 0)
+{
+  assemble();
+}
+
+GrainBalance::GrainBalance(GrainState &state,
+                           const std::vector<PrescribedMotion> &prescribed,
+                           std::vector<GrainLoad> loads,
+                           const std::size_t n_more)
     : state_(state)
     , loads_(std::move(loads))
 {
   const Grains &grains = state.grains;
-  const auto n = static_cast<Eigen::Index>(3 * grains.size());
+  const auto n = static_cast<Eigen::Index>(3 * grains.size() + n_more);
   prescribed_ = rate_ = residual_ = support_ = Eigen::VectorXd::Zero(n);
   levers_ = Eigen::VectorXd::Ones(n);
   element_strength_ = mean_element_strength(state.joints);
@@ -65,15 +74,24 @@ GrainBalance::GrainBalance(GrainState &state,
     prescribed_[index(motion.grain, motion.component)] = 1.;
     rate_[index(motion.grain, motion.component)] = motion.rate;
   }
-  assemble();
 }
 
-void GrainBalance::assemble()
+void GrainBalance::assemble(const std::vector<Eigen::Triplet<double>> &springs)
 {
   const Joints &joints = state_.joints;
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(22 * joints.size());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n_unknowns());
+  const auto add =
+      [&](const Eigen::Index row, const Eigen::Index column, const double value)
+  {
+    if (prescribed_[row] > 0.)
+      return;
+    if (prescribed_[column] > 0.)
+      right[row] -= value * rate_[column];
+    else if (row >= column)
+      entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+  };
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
     const auto rows = joint_rows(joints, j);
@@ -84,18 +102,12 @@ void GrainBalance::assemble()
         double value = 0.;
         for (unsigned int r = 0; r < 3; ++r)
           value += rows[r][a] * stiffness[r] * rows[r][b];
-        const Eigen::Index row =
-            index(a < 3 ? joints.first[j] : joints.second[j], a % 3);
-        const Eigen::Index column =
-            index(b < 3 ? joints.first[j] : joints.second[j], b % 3);
-        if (prescribed_[row] > 0.)
-          continue;
-        if (prescribed_[column] > 0.)
-          right[row] -= value * rate_[column];
-        else if (row >= column)
-          entries.emplace_back(static_cast<int>(row), static_cast<int>(column), value);
+        add(index(a < 3 ? joints.first[j] : joints.second[j], a % 3),
+            index(b < 3 ? joints.first[j] : joints.second[j], b % 3), value);
       }
   }
+  for (const Eigen::Triplet<double> &spring : springs)
+    add(spring.row(), spring.col(), spring.value());
   for (Eigen::Index i = 0; i < n_unknowns(); ++i)
     if (prescribed_[i] > 0.)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.);
@@ -117,6 +129,7 @@ void GrainBalance::add_forces(const discrete::StepTime &now,
     grains.force_y[load.grain] += load.force.y;
     grains.torque[load.grain] += load.torque;
   }
+  add_outer_forces();
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
     double *const force[3] = {&grains.force_x[i], &grains.force_y[i],
@@ -140,10 +153,10 @@ const Eigen::VectorXd &GrainBalance::residual()
   return residual_;
 }
 
-BalanceRatios GrainBalance::ratios() const
+BalanceRatios GrainBalance::ratios_with(const double further) const
 {
   const Grains &grains = state_.grains;
-  double sum = 0., largest = 0., n_free = 0.;
+  double sum = further, largest = further, n_free = 0.;
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
     const double force[3] = {grains.force_x[i], grains.force_y[i],

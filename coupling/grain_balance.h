@@ -4,6 +4,7 @@
 #include "coupling/grain_components.h"
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include <array>
 #include <optional>
@@ -86,7 +87,7 @@ public:
 
   Eigen::Index n_unknowns() const override { return prescribed_.size(); }
   const Eigen::VectorXd &residual() override;
-  BalanceRatios ratios() const override;
+  BalanceRatios ratios() const override { return ratios_with(0.); }
   double conjugate_force() const override;
   Eigen::VectorXd solve(const Eigen::VectorXd &r) const override;
   const Eigen::VectorXd &tangent() const override { return tangent_; }
@@ -104,18 +105,35 @@ public:
                   bool keep_forces);
   /// Work of the constant loads from the reference to the present place [J].
   double load_potential() const;
+  /// Springs to the ground beside the joints, by grain [N/m]; empty: none.
+  virtual std::vector<double> ground_stiffness() const { return {}; }
 
   GrainState &state() { return state_; }
   const GrainState &state() const { return state_; }
 
-private:
-  void assemble();
+protected:
+  /// With @p n_more unknowns behind those of the grains, free at first; assemble() is left
+  /// to do.
+  GrainBalance(GrainState &state,
+               const std::vector<PrescribedMotion> &prescribed,
+               std::vector<GrainLoad> loads,
+               std::size_t n_more);
+  /// Operator and tangent. \param springs entries beside the joints', both triangles,
+  /// rows and columns of prescribed unknowns too
+  void assemble(const std::vector<Eigen::Triplet<double>> &springs = {});
+  /// Forces on the grains beside those of joints and loads; called by add_forces().
+  virtual void add_outer_forces() {}
+  /// ratios() with @p further [N], an unbalanced force that is not a grain's.
+  BalanceRatios ratios_with(double further) const;
 
+  Eigen::VectorXd prescribed_; ///< 1 where motion is prescribed, else 0
+  Eigen::VectorXd rate_, residual_, support_;
+
+private:
   GrainState &state_;
   std::vector<GrainLoad> loads_;
-  Eigen::VectorXd prescribed_;   ///< 1 where motion is prescribed, else 0
   double element_strength_ = 0.; ///< mean, weighted; 0: nothing breaks [N]
-  Eigen::VectorXd rate_, levers_, residual_, support_, tangent_;
+  Eigen::VectorXd levers_, tangent_;
   std::optional<ElasticFactor> factor_;
 };
 } // namespace antiform::coupling

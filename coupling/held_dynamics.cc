@@ -37,12 +37,15 @@ settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &li
   discrete::Joints &joints = body.state().joints;
   const std::vector<double> inverse_mass = grains.inverse_mass,
                             inverse_inertia = grains.inverse_inertia;
-  const discrete::StiffnessSums sums = discrete::stiffness_sums(grains, joints, false);
+  discrete::StiffnessSums sums = discrete::stiffness_sums(grains, joints, false);
+  const std::vector<double> ground = body.ground_stiffness();
+  for (std::size_t i = 0; i < ground.size(); ++i)
+    sums.translation[i] += ground[i];
   discrete::scale_density(grains, sums, {}, common_step(grains, sums));
   stop(grains);
 
   // The factor of damping: see docs/theory/damping.md.
-  const double dt = settings.step_safety * discrete::stable_step(grains, joints) /
+  const double dt = settings.step_safety * discrete::stable_step(grains, joints, ground) /
                     std::sqrt(1. + settings.damping);
   discrete::GrainDamping damping;
   damping.coefficient = settings.damping;

@@ -13,8 +13,9 @@ double gap_to(const Wall &wall, const Grains &grains, const std::int32_t i)
   return dot(grains.reference(i) - wall.point, wall.normal) - grains.radius[i] +
          (dot(displacement, wall.normal) - wall.displacement);
 }
+} // namespace
 
-double elastic_gap(const Wall &wall, const WallContact &contact, const Grains &grains)
+double wall_gap(const Wall &wall, const WallContact &contact, const Grains &grains)
 {
   const Vec2 displacement{grains.displacement_x[contact.grain],
                           grains.displacement_y[contact.grain]};
@@ -24,7 +25,6 @@ double elastic_gap(const Wall &wall, const WallContact &contact, const Grains &g
   return installed + (dot(displacement, wall.normal) - wall.displacement) +
          contact.initial_gap;
 }
-} // namespace
 
 void install_wall_contacts(const Grains &grains,
                            Wall &wall,
@@ -85,7 +85,7 @@ void add_wall_forces(Grains &grains, Wall &wall)
   wall.reaction = wall.pressing_stiffness = 0.;
   for (const WallContact &contact : wall.contacts)
   {
-    const double gap = elastic_gap(wall, contact, grains);
+    const double gap = wall_gap(wall, contact, grains);
     if (gap >= 0.)
       continue;
     const double push = -contact.weight * contact.stiffness * gap;
@@ -102,7 +102,7 @@ double region_reaction(const Grains &grains, const Wall &wall, const int region)
   for (const WallContact &contact : wall.contacts)
     if (grains.region[contact.grain] == region)
     {
-      const double gap = elastic_gap(wall, contact, grains);
+      const double gap = wall_gap(wall, contact, grains);
       if (gap < 0.)
         sum -= contact.weight * contact.stiffness * gap;
     }
@@ -111,7 +111,7 @@ double region_reaction(const Grains &grains, const Wall &wall, const int region)
 
 double wall_force(const Wall &wall, const WallContact &contact, const Grains &grains)
 {
-  const double gap = elastic_gap(wall, contact, grains);
+  const double gap = wall_gap(wall, contact, grains);
   return gap < 0. ? -contact.weight * contact.stiffness * gap : 0.;
 }
 
@@ -120,7 +120,7 @@ double wall_energy(const Grains &grains, const Wall &wall)
   double energy = 0.;
   for (const WallContact &contact : wall.contacts)
   {
-    const double gap = elastic_gap(wall, contact, grains);
+    const double gap = wall_gap(wall, contact, grains);
     if (gap < 0.)
       energy += 0.5 * contact.weight * contact.stiffness * gap * gap;
   }

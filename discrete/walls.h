@@ -61,6 +61,9 @@ double region_reaction(const Grains &grains, const Wall &wall, int region);
 /// Force with which @p wall presses the grain of @p contact, along its normal [N].
 double wall_force(const Wall &wall, const WallContact &contact, const Grains &grains);
 
+/// Elastic gap of @p contact, negative where it presses [m].
+double wall_gap(const Wall &wall, const WallContact &contact, const Grains &grains);
+
 /// Strain energy of the wall's contacts [J].
 double wall_energy(const Grains &grains, const Wall &wall);
 

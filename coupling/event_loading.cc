@@ -1,0 +1,133 @@
+#include "coupling/event_loading.h"
+
+#include "coupling/specimen_components.h"
+
+#include <algorithm>
+
+namespace antiform::coupling
+{
+namespace
+{
+/// In which a pressure comes up. A load put on at once does twice the work that is
+/// stored; what is held back of it then is the number's part of that.
+constexpr std::int64_t n_pressure_steps = 20;
+} // namespace
+
+EventLoading::EventLoading(GrainState &state,
+                           std::vector<discrete::Wall> &ends,
+                           std::vector<discrete::Wall> &sides,
+                           const std::vector<PrescribedMotion> &held,
+                           const Options &options)
+    : state_(state)
+    , ends_(ends)
+    , sides_(sides)
+    , options_(options)
+    , body_(state, bearing_walls(), held)
+    , driver_(
+          state,
+          body_,
+          [this](const BalanceRatios &limits)
+          { return body_.settle(options_.driver.dynamics, limits); },
+          options.driver)
+    , motion_(state)
+    , bonds_(state)
+    , walls_(ends, &state, nullptr, nullptr, [](double) { return 0.; })
+{
+}
+
+std::vector<BearingWall> EventLoading::bearing_walls()
+{
+  const bool presses = options_.pressure > 0.;
+  std::vector<BearingWall> walls;
+  for (discrete::Wall &wall : ends_)
+    walls.push_back({&wall, 0.5 * options_.length, presses, 0.});
+  for (discrete::Wall &wall : sides_)
+    walls.push_back({&wall, 0., true, 0.});
+  return walls;
+}
+
+void EventLoading::run(const Stage, const Clock &clock)
+{
+  const std::size_t cracks = state_.cracks.size();
+  if (has_begun_)
+    load_next();
+  has_begun_ = true;
+  const BalanceRatios &ratios = driver_.find_balance().ratios;
+  worst_.mean = std::max(worst_.mean, ratios.mean);
+  worst_.largest = std::max(worst_.largest, ratios.largest);
+  worst_.of_strength = std::max(worst_.of_strength, ratios.of_strength);
+  for (std::size_t k = cracks; k < state_.cracks.size(); ++k)
+  {
+    state_.cracks[k].step = static_cast<std::uint64_t>(clock.step);
+    state_.cracks[k].time = clock.time;
+  }
+}
+
+void EventLoading::load_next()
+{
+  body_.find_contacts(options_.reach, options_.modulus);
+  if (options_.pressure > 0. && pressure_steps_ < n_pressure_steps)
+    return press();
+  std::vector<BearingWall> &walls = body_.walls();
+  if (pressure_steps_ == n_pressure_steps) // the ends are held from now on
+  {
+    ++pressure_steps_;
+    for (std::size_t w = 0; w < ends_.size(); ++w)
+      walls[w].is_loaded = false;
+    body_.assemble_walls();
+  }
+  driver_.step_towards(options_.target);
+}
+
+void EventLoading::press()
+{
+  ++pressure_steps_;
+  const double pressure = options_.pressure * static_cast<double>(pressure_steps_) /
+                          static_cast<double>(n_pressure_steps);
+  std::vector<BearingWall> &walls = body_.walls();
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    walls[w].load = pressure * (w < ends_.size() ? options_.height : options_.length);
+}
+
+void EventLoading::add_energies(Energies &energies) const
+{
+  if (driver_.report().records.empty())
+    return; // nothing has been balanced since a checkpoint was read
+  Energies books = driver_.report().records.back().energies;
+  const auto from = books.terms(), to = energies.terms();
+  for (std::size_t k = 0; k < to.size(); ++k)
+    *to[k] += *from[k];
+  for (const std::vector<discrete::Wall> *walls : {&ends_, &sides_})
+    for (const discrete::Wall &wall : *walls)
+      energies.strain_grains += wall_energy(state_.grains, wall);
+}
+
+void EventLoading::visit_state(StateArchive &archive)
+{
+  motion_.visit_state(archive);
+  bonds_.visit_state(archive);
+  walls_.visit_state(archive);
+  visit_walls(archive, "servo walls", sides_);
+  std::int64_t has_begun = has_begun_ ? 1 : 0;
+  archive.value("event_loading/has_begun", has_begun);
+  archive.value("event_loading/pressure_steps", pressure_steps_);
+  archive.value("event_loading/worst_mean", worst_.mean);
+  archive.value("event_loading/worst_largest", worst_.largest);
+  archive.value("event_loading/worst_of_strength", worst_.of_strength);
+  has_begun_ = has_begun != 0;
+  if (archive.is_loading() && pressure_steps_ > 0)
+  {
+    const bool stands = pressure_steps_ > n_pressure_steps;
+    pressure_steps_ = std::min(pressure_steps_, n_pressure_steps) - 1;
+    press(); // the loads of the walls
+    if (stands)
+    {
+      ++pressure_steps_;
+      for (std::size_t w = 0; w < ends_.size(); ++w)
+        body_.walls()[w].is_loaded = false;
+    }
+  }
+  body_.visit_state(archive);
+  driver_.visit_state(archive);
+}
+} // namespace antiform::coupling

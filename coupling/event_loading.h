@@ -1,0 +1,78 @@
+#pragma once
+
+#include "coupling/event_driver.h"
+#include "coupling/joining_components.h"
+#include "coupling/simulation.h"
+#include "coupling/walled_grains.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace antiform::coupling
+{
+/// Loads a scene of grains from one state of balance to the next (EventDriver): a step of
+/// the simulation is a load step and the balance after it, and there is no time. A
+/// pressure on all sides comes up first, in even steps, before the ends shorten or extend
+/// the section.
+class EventLoading : public Component
+{
+public:
+  struct Options
+  {
+    DriverSettings driver;
+    double target = 0.;          ///< of the load parameter: shortening, or extension [-]
+    double pressure = 0.;        ///< on all sides before [Pa]
+    double height = 0.;          ///< of an end [m]
+    double length = 0.;          ///< of a side, and that for a shortening of 1 [m]
+    double reach = 0.;           ///< of the walls' search for contacts [m]
+    std::vector<double> modulus; ///< E* by region [Pa]
+  };
+
+  /// \param ends   walls that shorten the section, or none; referred to, as the sides are
+  /// \param sides  walls that keep the pressure, or none
+  /// \param held   what holds or moves grains beside them
+  EventLoading(GrainState &state,
+               std::vector<discrete::Wall> &ends,
+               std::vector<discrete::Wall> &sides,
+               const std::vector<PrescribedMotion> &held,
+               const Options &options);
+
+  void run(Stage stage, const Clock &clock) override;
+  void add_energies(Energies &energies) const override;
+  void visit_state(StateArchive &archive) override;
+
+  /// Shortening of the section, or its extension, since the pressure stands [-].
+  double load() const { return driver_.load(); }
+  /// Work per unit of it, over the length that it counts on: force of an end [N].
+  double force() const { return body_.conjugate_force() / options_.length; }
+  BalanceRatios ratios() const { return body_.ratios(); }
+  /// Largest of all records.
+  const BalanceRatios &worst_ratios() const { return worst_; }
+  const DriverReport &report() const { return driver_.report(); }
+  /// For what an end carries.
+  Walls &walls() { return walls_; }
+  /// Called at each evaluation of the forces; may throw to give up the load step at hand.
+  void set_watch(std::function<void()> watch) { body_.on_evaluation = std::move(watch); }
+
+private:
+  std::vector<BearingWall> bearing_walls();
+  void load_next();
+  void press();
+
+  GrainState &state_;
+  std::vector<discrete::Wall> &ends_, &sides_;
+  Options options_;
+  WalledGrains body_;
+  EventDriver driver_;
+  // Their arrays in a checkpoint, and what the walls carry, are those of explicit motion.
+  GrainMotion motion_;
+  Bonds bonds_;
+  Walls walls_;
+  // State.
+  std::int64_t pressure_steps_ = 0; ///< done
+  bool has_begun_ = false;          ///< the body without load has been recorded
+  BalanceRatios worst_;
+};
+} // namespace antiform::coupling
