@@ -55,18 +55,20 @@ void check_event_joints(const Parameters &p, std::vector<Finding> &findings)
                               bed.bond_model + "s. " + otherwise +
                               ", or 'Layer/Bond model' = 'flat joint'."});
     if (bed.types.slit_fraction + bed.types.gapped_fraction > 0.)
-      findings.push_back({{"Walls/Loading", entry("Layer/Joint types/Slit fraction"),
-                           entry("Layer/Joint types/Gapped fraction")},
-                          of_bed +
-                              "the event driver wants all joints bonded at the "
-                              "beginning. " +
-                              otherwise + ", or shares of 0."});
+      findings.push_back(
+          {{"Walls/Loading", entry("Layer/Joint types/Slit fraction"),
+            entry("Layer/Joint types/Gapped fraction")},
+           of_bed +
+               "the event driver wants all joints bonded at the "
+               "beginning. " +
+               otherwise +
+               ", or 0 to 'Layer/Joint types/Slit fraction' and 'Gapped fraction'."});
   }
   if (p.layer.locked_in_stress > 0.)
     findings.push_back(
         {{"Walls/Loading", "Layer/Locked-in stress"},
          "the event driver wants joints free of stress at the beginning. " + otherwise +
-             ", or a stress of 0."});
+             ", or 'Layer/Locked-in stress' = 0."});
 }
 } // namespace
 
@@ -79,8 +81,8 @@ void check_event_driver(const Parameters &p, std::vector<Finding> &findings)
         {{"Walls/Loading", "Components", "Run/Driver"},
          "the event driver belongs to the quasi-static driver, and where a "
          "collapse goes on it hands over to motion that comes to rest "
-         "under damping only. Add 'damping' to 'Components' with the "
-         "quasi-static driver, or give 'constant rate'."});
+         "under damping only. Add 'damping' to 'Components' and give 'Run/Driver' = "
+         "'quasi-static', or here 'constant rate'."});
   if (!p.has("layer"))
     return;
   if (p.layer.representation != "grains")

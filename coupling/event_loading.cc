@@ -37,10 +37,13 @@ EventLoading::EventLoading(GrainState &state,
 
 std::vector<BearingWall> EventLoading::bearing_walls()
 {
+  // While the pressure comes up one end stays where it is and reacts as the other, which
+  // is free, presses: with both of them free the body could go anywhere.
   const bool presses = options_.pressure > 0.;
   std::vector<BearingWall> walls;
   for (discrete::Wall &wall : ends_)
-    walls.push_back({&wall, 0.5 * options_.length, presses, 0.});
+    walls.push_back(
+        {&wall, 0.5 * options_.length, presses && &wall == &ends_.back(), 0.});
   for (discrete::Wall &wall : sides_)
     walls.push_back({&wall, 0., true, 0.});
   return walls;

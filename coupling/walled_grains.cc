@@ -117,8 +117,8 @@ void WalledGrains::follow_load(BearingWall &bearing) const
     if (std::abs(left) <= 1e-12 * bearing.load)
       return;
     // Away from all grains: up to the nearest, and a little into it.
-    wall.displacement +=
-        stiffness > 0. ? left / stiffness : nearest + 1e-12 * norm(wall.point);
+    wall.displacement += stiffness > 0. ? left / stiffness
+                                        : nearest + 1e-9 * state().grains.radius.front();
   }
 }
 
@@ -185,9 +185,22 @@ HeldResult WalledGrains::settle(const HeldDynamics &settings, const BalanceRatio
   double before = 0., after = 0.; // work of the walls' loads since their start [J]
   for (const BearingWall &bearing : walls_)
     before += bearing.is_loaded ? bearing.load * bearing.wall->displacement : 0.;
+  // A wall that starts out of balance jumps to it: what its load does beyond the springs'
+  // energy is lost. From then on it goes with the grains.
+  double lost = 0.;
+  for (BearingWall &bearing : walls_)
+    if (bearing.is_loaded)
+    {
+      const discrete::Wall &wall = *bearing.wall;
+      const double energy = wall_energy(state().grains, wall), place = wall.displacement;
+      follow_load(bearing);
+      lost += bearing.load * (wall.displacement - place) -
+              (wall_energy(state().grains, wall) - energy);
+    }
   walls_follow_ = true;
   HeldResult result = coupling::settle(*this, settings, limits);
   walls_follow_ = false;
+  result.dissipated += lost;
   for (const BearingWall &bearing : walls_)
     after += bearing.is_loaded ? bearing.load * bearing.wall->displacement : 0.;
   result.load_work += after - before;
