@@ -15,6 +15,8 @@ namespace
 /// Steps over the length in grains after which a motion that does not come to rest is
 /// given up: 2000 transits of some four steps a grain, as of walls that step and relax.
 constexpr double longest_settling = 8000.;
+/// Those after which it is a collapse: 100 transits.
+constexpr double patience_of_settling = 400.;
 
 /// Frictionless ends leave the section free to move along them: one grain at an end, near
 /// the layer's axis, is kept from it. Nothing pushes it that way in balance.
@@ -80,8 +82,10 @@ void add_event_loading(Scene &scene)
   driver.settled_after_peak = tolerance;
   driver.largest_step = p.walls.load_step;
   driver.dynamics.damping = p.damping.coefficient;
-  driver.dynamics.most_steps =
-      std::llround(longest_settling * scene.geometry.length() / scene.geometry.diameter());
+  const double grains_along = scene.geometry.length() / scene.geometry.diameter();
+  driver.dynamics.most_steps = std::llround(longest_settling * grains_along);
+  driver.dynamics.patience = std::llround(patience_of_settling * grains_along);
+  driver.dynamics.collapsed = tolerance;
   driver.stop_drop = 0.; // the record decides
   options.target =
       p.run.end_shortening > 0. ? p.run.end_shortening : p.run.longest_shortening;

@@ -62,7 +62,10 @@ settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &li
     const discrete::GrainVelocities before =
         look ? discrete::velocities(grains) : discrete::GrainVelocities{};
     discrete::damped_kick(grains, dt, damping);
-    if (look && ratios.within(limits))
+    BalanceRatios allowed = limits;
+    if (result.steps > settings.patience)
+      allowed.mean = std::max(limits.mean, settings.collapsed);
+    if (look && ratios.within(allowed))
     {
       result.dissipated = discrete::kinetic_energy(grains, before);
       break;

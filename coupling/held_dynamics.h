@@ -13,6 +13,10 @@ struct HeldDynamics
   double step_safety = 0.8;
   int check_interval = 20;            ///< steps between two looks at the ratios
   std::int64_t most_steps = 10000000; ///< before it is given up
+  /// Steps after which the motion counts as a collapse: loose fragments settle slowly and
+  /// joints carry little, and the mean ratio need only be below `collapsed`.
+  std::int64_t patience = 10000000;
+  double collapsed = 1e-3;
 };
 
 /// What came of it.
