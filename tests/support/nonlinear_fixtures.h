@@ -49,7 +49,7 @@ inline Vector wavy_field(const continuum::DisplacementSpace &space, const double
 }
 
 /// Eigenvalues of the symmetric part of a matrix among the dofs that are free, ascending;
-/// the same on all ranks.
+/// the same on all ranks of its mesh.
 inline std::vector<double> eigenvalues(const continuum::DisplacementSpace &space,
                                        const Matrix &matrix,
                                        const continuum::DirichletValues &held)
@@ -63,8 +63,9 @@ inline std::vector<double> eigenvalues(const continuum::DisplacementSpace &space
     for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
       entries[static_cast<std::size_t>(row) * n + entry->column()] = entry->value();
   }
-  dealii::Utilities::MPI::sum(entries, MPI_COMM_WORLD, entries);
-  dealii::Utilities::MPI::sum(is_free, MPI_COMM_WORLD, is_free);
+  const MPI_Comm communicator = space.dof_handler().get_communicator();
+  dealii::Utilities::MPI::sum(entries, communicator, entries);
+  dealii::Utilities::MPI::sum(is_free, communicator, is_free);
 
   std::vector<unsigned int> rows;
   for (unsigned int i = 0; i < n; ++i)
