@@ -1,10 +1,10 @@
 #include "cases/buckling_run.h"
 
+#include "cases/buckling_grains.h"
 #include "cases/buckling_section.h"
 #include "cases/interrupt.h"
 #include "cases/mechanism.h"
 #include "cases/solid_run.h"
-#include "coupling/output/mesh_vtu.h"
 #include "coupling/output/tables.h"
 #include "coupling/output/vtu.h"
 
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace antiform::cases
@@ -48,15 +49,13 @@ double dominant_wavelength(const std::vector<Mode> &modes, const double length)
 }
 
 /// What a reader should know before he believes the figures.
-std::vector<std::string> doubts(const BucklingSection &section,
-                                const std::vector<Mode> &modes,
-                                const int wanted,
-                                const double last_change)
+std::vector<std::string> doubts(const StraightSection &section, const double last_change)
 {
-  std::vector<std::string> texts;
+  const std::vector<Mode> &modes = section.modes();
+  const int wanted = section.parameters().run.modes;
+  std::vector<std::string> texts = section.doubts();
   char text[240];
   const Mode &lowest = modes.front();
-  const double columns = section.geometry().n_columns();
   const bool refined = section.parameters().matrix.refinement_rounds > 0;
   // The accuracy that closed forms are met with. What is left is 0.1 to 2.2 times the change
   // (cases/burial-depth/accuracy.py).
@@ -66,14 +65,6 @@ std::vector<std::string> doubts(const BucklingSection &section,
                   "the last round of refinement changed the load by %.2g %%: give more "
                   "'Matrix/Refinement rounds', or smaller cells to begin with",
                   100. * last_change);
-    texts.push_back(text);
-  }
-  if (!refined && (lowest.half_waves == 0 || columns < 6. * lowest.half_waves))
-  {
-    std::snprintf(text, sizeof text,
-                  "%.3g columns of cells a half wave: too few for a load to trust. Give "
-                  "'Matrix/Cell aspect ratio' less, for 8 or more",
-                  lowest.half_waves == 0 ? columns : columns / lowest.half_waves);
     texts.push_back(text);
   }
   if (lowest.half_waves < 3 && section.parameters().has("matrix"))
@@ -110,32 +101,23 @@ std::string percent(const double ratio)
 }
 
 /// Shapes as field files, and the table of loads.
-void write_modes(const BucklingSection &section, const std::string &directory)
+void write_modes(const StraightSection &section, const std::string &directory)
 {
-  const std::vector<Mode> &modes = section.modes();
-  const bool first =
-      dealii::Utilities::MPI::this_mpi_process(section.communicator()) == 0;
-  std::optional<coupling::Table> table;
-  if (first)
-    table.emplace(directory + "/modes.csv",
-                  std::vector<std::string>{"mode", "shortening", "layer_stress_Pa",
-                                           "half_waves", "wavelength_m"});
-  std::vector<coupling::PvdEntry> fields;
-  for (std::size_t k = 0; k < modes.size(); ++k)
+  const std::vector<coupling::PvdEntry> fields = section.write_fields(directory);
+  if (dealii::Utilities::MPI::this_mpi_process(section.communicator()) != 0)
+    return;
+  coupling::write_pvd(directory + "/fields.pvd", fields);
+  coupling::Table table(
+      directory + "/modes.csv",
+      {"mode", "shortening", "layer_stress_Pa", "half_waves", "wavelength_m"});
+  double number = 0.;
+  for (const Mode &mode : section.modes())
   {
-    const double n = modes[k].half_waves;
-    if (first)
-      table->append(
-          std::vector<double>{k + 1., modes[k].shortening, modes[k].stress, n,
-                              n > 0. ? 2. * section.geometry().length() / n : 0.});
-    char file[64];
-    std::snprintf(file, sizeof file, "fields/mode_%04zu.vtu", k + 1);
-    coupling::write_mesh_vtu(directory + "/" + file, section.solid(),
-                             section.shapes()[k].shape);
-    fields.push_back({k + 1., "continuum", file});
+    const double n = mode.half_waves;
+    table.append(
+        std::vector<double>{++number, mode.shortening, mode.stress, n,
+                            n > 0. ? 2. * section.geometry().length() / n : 0.});
   }
-  if (first)
-    coupling::write_pvd(directory + "/fields.pvd", fields);
 }
 
 void log_modes(const std::vector<Mode> &modes, RunLog &log)
@@ -150,20 +132,44 @@ void log_modes(const std::vector<Mode> &modes, RunLog &log)
   }
 }
 
+/// Of grains: the closed form of a thick layer as stiff as they turn out to be, in as
+/// many half waves. In words.
+std::string compare_as_packed(const StraightSection &section,
+                              std::map<std::string, Result> &results)
+{
+  const Parameters &p = section.parameters();
+  const Mode &lowest = section.modes().front();
+  const double modulus = section.plane_modulus();
+  results["layer_plane_modulus"] = {modulus, "Pa"};
+  if (!theory_of(p) || lowest.half_waves == 0)
+    return "";
+  continuum::theory::SupportedLayer packed = supported_layer(p);
+  packed.layer.young_modulus *= modulus / packed.layer.plane_modulus();
+  packed.thick = true;
+  const double stress =
+      packed.buckling_force(M_PI * lowest.half_waves / section.geometry().length()) /
+      packed.layer.thickness;
+  results["theory_stress_as_packed"] = {stress, "Pa"};
+  return "; as stiff as the grains are (E' " + percent(modulus / p.plane_modulus()) +
+         "), thick, in as many half waves: stress " + percent(lowest.stress / stress);
+}
+
 /// The summary's results, and in words what they are against the closed form.
-std::string compare(const BucklingSection &section,
-                    const std::vector<Mode> &modes,
+std::string compare(const StraightSection &section,
                     std::map<std::string, Result> &results)
 {
+  const std::vector<Mode> &modes = section.modes();
   const Mode &lowest = modes.front();
   const double wavelength = dominant_wavelength(modes, section.geometry().length());
-  results = {{"critical_stress", {lowest.stress, "Pa"}},
-             {"critical_shortening", {lowest.shortening, "-"}},
-             {"half_waves", {static_cast<double>(lowest.half_waves), "-"}},
-             {"dominant_wavelength", {wavelength, "m"}}};
+  results["critical_stress"] = {lowest.stress, "Pa"};
+  results["critical_shortening"] = {lowest.shortening, "-"};
+  results["half_waves"] = {static_cast<double>(lowest.half_waves), "-"};
+  results["dominant_wavelength"] = {wavelength, "m"};
   char text[128];
   std::snprintf(text, sizeof text, "the layer buckles at %.4g Pa, wavelength %.4g m",
                 lowest.stress, wavelength);
+  const bool grains = section.parameters().layer.representation == "grains";
+  const std::string packed = grains ? compare_as_packed(section, results) : "";
   const auto theory = theory_of(section.parameters());
   if (!theory)
     return text;
@@ -171,13 +177,14 @@ std::string compare(const BucklingSection &section,
   results["theory_wavelength"] = {theory->wavelength, "m"};
   return std::string(text) + " (closed form of a long layer: stress " +
          percent(lowest.stress / theory->stress) + ", wavelength " +
-         percent(wavelength / theory->wavelength) + ")";
+         percent(wavelength / theory->wavelength) + packed + ")";
 }
+
 /// Rounds of refinement, and what each was worth.
 class RefinementRecord
 {
 public:
-  RefinementRecord(const std::string &directory, const BucklingSection &section)
+  RefinementRecord(const std::string &directory, const StraightSection &section)
       : section_(section)
   {
     if (section.parameters().matrix.refinement_rounds > 0 &&
@@ -191,7 +198,7 @@ public:
   {
     const double stress = section_.modes().front().stress,
                  change = stress_ > 0. ? stress / stress_ - 1. : 0.,
-                 dofs = static_cast<double>(section_.solid().dof_handler().n_dofs()),
+                 dofs = static_cast<double>(section_.sizes().at("dofs")),
                  estimate = section_.estimate();
     if (table_)
       table_->append(std::vector<double>{static_cast<double>(round), dofs, stress, change,
@@ -209,14 +216,14 @@ public:
   double last_change = 0., last_estimate = 0.;
 
 private:
-  const BucklingSection &section_;
+  const StraightSection &section_;
   std::optional<coupling::Table> table_;
   double stress_ = 0.;
 };
 
 /// Solve, and refine as often as the deck says; the number of solves. Throws
 /// BucklingStopped.
-int solve_in_rounds(BucklingSection &section,
+int solve_in_rounds(StraightSection &section,
                     const std::function<bool()> &stop,
                     const std::string &directory,
                     RunLog &log,
@@ -238,6 +245,26 @@ int solve_in_rounds(BucklingSection &section,
   results["error_indicator"] = {record.last_estimate, "-"};
   return 2 * (round + 1);
 }
+/// Built of what the deck says.
+std::unique_ptr<StraightSection>
+make_section(const Parameters &p, RunLog &log, const MPI_Comm communicator)
+{
+  if (p.layer.representation == "grains")
+    return std::make_unique<BucklingGrains>(
+        p, communicator, [&](const std::string &what) { log.line("  " + what); });
+  log.line("  building the mesh");
+  return std::make_unique<BucklingSection>(p, communicator);
+}
+
+std::string size_in_words(const StraightSection &section)
+{
+  const auto sizes = section.sizes();
+  std::string text;
+  for (const char *const what : {"grains", "dofs", "multipliers"})
+    if (sizes.at(what) > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(sizes.at(what)) + " " + what;
+  return text;
+}
 } // namespace
 
 int run_buckling(const Parameters &p,
@@ -247,17 +274,15 @@ int run_buckling(const Parameters &p,
 {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
-  log.line("  building the mesh");
-  BucklingSection section(p, communicator);
-  log.line("  " + std::to_string(section.solid().dof_handler().n_dofs()) +
-           " dofs: straight section, then modes");
+  const std::unique_ptr<StraightSection> section = make_section(p, log, communicator);
+  log.line("  " + size_in_words(*section) + ": straight section, then modes");
   std::string status = "completed", words;
   std::map<std::string, Result> results;
   int n_solves = 0;
   try
   {
     n_solves = solve_in_rounds(
-        section, [&] { return must_stop(begin, options.time_limit, communicator); },
+        *section, [&] { return must_stop(begin, options.time_limit, communicator); },
         options.output, log, results);
   }
   catch (const continuum::BucklingStopped &)
@@ -266,20 +291,20 @@ int run_buckling(const Parameters &p,
     words = "a buckling run keeps no checkpoint, run it again";
   }
 
-  Summary summary = summary_of_solid(p, section.solid(), begin);
-  summary.status = status;
-  summary.solves = n_solves;
   if (status == "completed")
   {
-    write_modes(section, options.output);
-    words = compare(section, section.modes(), summary.results);
-    summary.results.insert(results.begin(), results.end());
-    summary.warnings = doubts(section, section.modes(), p.run.modes,
-                              results.count("change_in_last_round") > 0
-                                  ? results.at("change_in_last_round").value
-                                  : 0.);
-    log_modes(section.modes(), log);
+    write_modes(*section, options.output);
+    words = compare(*section, results);
+    log_modes(section->modes(), log);
   }
+  Summary summary = summary_of_run(p, communicator, section->sizes(), begin);
+  summary.status = status;
+  summary.solves = n_solves;
+  summary.results = results;
+  if (status == "completed")
+    summary.warnings = doubts(*section, results.count("change_in_last_round") > 0
+                                            ? results.at("change_in_last_round").value
+                                            : 0.);
   summarise_effects(p, summary.solves, summary);
   if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     write_summary(options.output + "/summary.json", summary);

@@ -8,11 +8,13 @@
 #include "continuum/error_indicator.h"
 #include "continuum/refinement.h"
 #include "continuum/sliding_interface.h"
+#include "coupling/output/mesh_vtu.h"
 
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace antiform::cases
 {
@@ -27,8 +29,7 @@ bool slides(const Parameters &p)
 } // namespace
 
 BucklingSection::BucklingSection(const Parameters &p, const MPI_Comm communicator)
-    : p_(p)
-    , geometry_(p)
+    : StraightSection(p)
     , mesh_(make_mesh(p, geometry_, communicator))
 {
   build();
@@ -40,6 +41,39 @@ void BucklingSection::build()
       *mesh_, mesh_materials(p_), static_cast<unsigned int>(p_.matrix.element_degree));
   if (p_.has("foundation"))
     solid_->add_to_stiffness(section_foundation(p_, *solid_));
+}
+
+std::map<std::string, std::int64_t> BucklingSection::sizes() const
+{
+  return sizes_of_solid(*solid_);
+}
+
+std::vector<coupling::PvdEntry>
+BucklingSection::write_fields(const std::string &directory) const
+{
+  std::vector<coupling::PvdEntry> fields;
+  for (std::size_t k = 0; k < shapes_.size(); ++k)
+  {
+    char file[64];
+    std::snprintf(file, sizeof file, "fields/mode_%04zu.vtu", k + 1);
+    coupling::write_mesh_vtu(directory + "/" + file, *solid_, shapes_[k].shape);
+    fields.push_back({static_cast<double>(k + 1), "continuum", file});
+  }
+  return fields;
+}
+
+std::vector<std::string> BucklingSection::doubts() const
+{
+  const unsigned int n = modes_.front().half_waves;
+  const double columns = geometry_.n_columns();
+  if (p_.matrix.refinement_rounds > 0 || (n > 0 && columns >= 6. * n))
+    return {};
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%.3g columns of cells a half wave: too few for a load to trust. Give "
+                "'Matrix/Cell aspect ratio' less, for 8 or more",
+                n == 0 ? columns : columns / n);
+  return {text};
 }
 
 /// Mean compression along the layer [Pa], tension negative.

@@ -17,9 +17,13 @@ Effect choose(const std::string &name,
 }
 
 /// Effects that wait for the first broken bond.
-Effect
-after_breakage(const std::string &name, const bool possible, const std::string &what)
+Effect after_breakage(const Parameters &p,
+                      const std::string &name,
+                      const bool possible,
+                      const std::string &what)
 {
+  if (p.run.driver == "buckling")
+    return {name, State::absent, "the buckling driver is linear: bonds stay whole"};
   return {name, possible ? State::when_needed : State::absent,
           possible ? what + " from the first broken bond on"
                    : "no bond of this scene can break"};
@@ -45,7 +49,7 @@ std::vector<Effect> list_effects(const Parameters &p)
   const auto at_breakage = [&](const std::string &name, const std::string &what)
   {
     return p.has_unbonded_joints() ? Effect{name, State::present, unbonded}
-                                   : after_breakage(name, breakable, what);
+                                   : after_breakage(p, name, breakable, what);
   };
 
   std::vector<Effect> list;

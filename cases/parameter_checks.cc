@@ -339,12 +339,11 @@ void check_run(const Parameters &p, Findings &findings)
         {{"Run/End shortening", "Run/Longest shortening"},
          "beyond 'Run/Longest shortening' = " + short_text(p.run.longest_shortening) +
              ", where the run would be given up. Raise that, or end sooner."});
-  if (!p.run.steps_in_time() && p.has("layer") && p.layer.representation == "grains")
+  if (p.run.driver == "static" && p.has("layer") && p.layer.representation == "grains")
     findings.push_back({{"Run/Driver", "Layer/Representation"},
-                        "the " + p.run.driver +
-                            " driver solves the elastic continuum, and the layer is "
-                            "grains. Give quasi-static, or 'Layer/Representation' = "
-                            "'continuum'."});
+                        "the static driver solves the elastic continuum, and the layer is "
+                        "grains. Give quasi-static, or 'Layer/Representation' = "
+                        "'continuum'."});
   if (p.has("walls") && p.walls.steps_and_relaxes())
   {
     if (!p.has("damping") || p.run.driver != "quasi-static")

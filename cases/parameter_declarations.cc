@@ -245,8 +245,8 @@ void declare(RunParameters &run, Declarations &entries)
   entries.choice(
       "Driver", run.driver,
       "quasi-static (rates do not matter), dynamic (they do), static (implicit "
-      "solves), buckling (loads and shapes at which a straight section of finite "
-      "elements gives way).",
+      "solves, finite elements only), buckling (loads and shapes at which a straight "
+      "section gives way, by the linear theory).",
       "quasi-static|dynamic|static|buckling");
   entries.number(
       "Step safety", run.safety,

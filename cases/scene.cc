@@ -162,7 +162,7 @@ void Scene::visit_state(coupling::StateArchive &archive)
 }
 
 std::unique_ptr<Scene>
-build(const Parameters &p, const MPI_Comm communicator, const Progress &progress)
+build_bodies(const Parameters &p, const MPI_Comm communicator, const Progress &progress)
 {
   auto scene = std::make_unique<Scene>(p);
   const bool grains = p.layer.representation == "grains";
@@ -195,26 +195,11 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
     scene->walls = make_walls(none, scene->geometry);
   }
 
-  if (p.follows_events())
-  {
-    scene->simulation = std::make_unique<Simulation>(0.); // without time
-    add_event_loading(*scene);
-    return scene;
-  }
-
-  std::vector<double> foundation_rows;
-  std::unique_ptr<MeshFoundation> foundation;
   if (!grains || bridged)
   {
     progress("building the mesh");
     build_mesh(*scene, communicator);
     support_mesh(*scene);
-    if (p.has("foundation"))
-    {
-      foundation = std::make_unique<MeshFoundation>(
-          *scene->mesh, section_foundation(p, *scene->solid));
-      foundation_rows = foundation->absolute_row_sums();
-    }
   }
   if (bridged)
   {
@@ -232,7 +217,29 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
         0.1 * scene->grains->matrix->bulk_density * cell * cell);
     scene->mass_weight = scene->bridging->grain_mass_weight();
   }
+  return scene;
+}
 
+std::unique_ptr<Scene>
+build(const Parameters &p, const MPI_Comm communicator, const Progress &progress)
+{
+  std::unique_ptr<Scene> scene = build_bodies(p, communicator, progress);
+  if (p.follows_events())
+  {
+    scene->simulation = std::make_unique<Simulation>(0.); // without time
+    add_event_loading(*scene);
+    return scene;
+  }
+
+  const bool bridged = p.is_bridged();
+  std::vector<double> foundation_rows;
+  std::unique_ptr<MeshFoundation> foundation;
+  if (scene->mesh && p.has("foundation"))
+  {
+    foundation = std::make_unique<MeshFoundation>(*scene->mesh,
+                                                  section_foundation(p, *scene->solid));
+    foundation_rows = foundation->absolute_row_sums();
+  }
   const double dt = choose_step(*scene, foundation_rows);
   if (bridged)
     scene->bridging->factorise(scene->grains->state.grains, scene->mesh->inverse_mass);

@@ -82,6 +82,12 @@ struct Scene
   void visit_state(coupling::StateArchive &archive);
 };
 
+/// The bodies of a checked deck's scene, and what joins them, at rest: no simulation.
+/// Throws as build().
+std::unique_ptr<Scene> build_bodies(const Parameters &parameters,
+                                    MPI_Comm communicator,
+                                    const Progress &progress);
+
 /// Build the scene of a checked deck. Throws InputError for what only the packing can
 /// tell (a Poisson ratio out of reach), NumericalError for a constraint that is singular.
 std::unique_ptr<Scene>

@@ -86,6 +86,57 @@ void check_materials(const Parameters &p, Findings &findings)
     check_finite_strain(p, findings);
 }
 
+namespace
+{
+/// What the linear static system of grains leaves out. Grips, locked-in stress and the
+/// like are no shortening from a stress-free state.
+void check_buckling_of_grains(const Parameters &p, Findings &findings)
+{
+  const auto find = [&](std::vector<std::string> entries, const std::string &text)
+  { findings.push_back({std::move(entries), "the buckling driver " + text}); };
+  if (p.has("fractures"))
+    find({"Components", "Run/Driver"},
+         "knows no smooth joints, and fractures slide and part. Remove fractures from "
+         "'Components', or give quasi-static.");
+  if (p.has("beds") && p.beds.interface == "frictional")
+    find({"Beds/Interface", "Run/Driver"},
+         "knows no smooth joints, and beds that rub are joined by these. Give cemented, "
+         "or 'Run/Driver' = 'quasi-static'.");
+  if (p.has("matrix") && p.matrix.interface == "frictionless")
+    find({"Matrix/Interface", "Run/Driver"},
+         "is linear, and grains in frictionless contact may part. Give cemented, or "
+         "'Run/Driver' = 'quasi-static'.");
+  if (p.has_unbonded_joints())
+    find({"Layer/Joint types/Slit fraction", "Layer/Joint types/Gapped fraction",
+          "Run/Driver"},
+         "is linear, and joints that begin without bonds close and slide. Give 0 for "
+         "both, or 'Run/Driver' = 'quasi-static'.");
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+    if (discrete::has_contact_beside(p.bed(bed).law()))
+    {
+      find({"Layer/Bond model", "Run/Driver"},
+           "is linear, and the contacts beside parallel bonds may part. Give flat joint "
+           "or contact bond, or 'Run/Driver' = 'quasi-static'.");
+      break;
+    }
+  if (p.layer.locked_in_stress > 0.)
+    find({"Layer/Locked-in stress", "Run/Driver"},
+         "looks for a multiple of one load, the shortening, beside which no other stress "
+         "can be. Give 0.");
+  if (p.walls.action == "pull" || p.confinement() != nullptr)
+    find({"Walls/Action", "Components", "Run/Driver"},
+         "knows one load, the shortening by the walls. Give press, and remove servo walls "
+         "and membrane from 'Components'.");
+  if (p.is_bridged() && !p.bridging.constraint)
+    find({"Bridging domain/Constraint", "Run/Driver"},
+         "would find the cover loose. Give true.");
+  if (p.has("matrix") && p.matrix.refinement_rounds > 0)
+    find({"Matrix/Refinement rounds", "Layer/Representation"},
+         "refines sections of finite elements alone. Give 0, and a smaller "
+         "'Matrix/Cell size ratio' for smaller cells.");
+}
+} // namespace
+
 /// What the linear theory of buckling leaves out.
 void check_buckling(const Parameters &p, Findings &findings)
 {
@@ -99,8 +150,10 @@ void check_buckling(const Parameters &p, Findings &findings)
   // square ones, 5.0, 1.1, 0.25 % with 3, 6, 12 in the layer's thickness.
   const double length =
       p.matrix.cell_aspect * p.matrix.cell_size * p.grain_diameter() / p.layer.thickness;
-  if (p.matrix.element_degree == 1 && p.matrix.refinement_rounds == 0 &&
-      0.4 * length * length > 0.02)
+  if (p.layer.representation == "grains")
+    check_buckling_of_grains(p, findings);
+  else if (p.matrix.element_degree == 1 && p.matrix.refinement_rounds == 0 &&
+           0.4 * length * length > 0.02)
     find({"Matrix/Element degree", "Matrix/Cell aspect ratio", "Matrix/Cell size ratio"},
          "bilinear cells " + short_text(length) + " h long are some " +
              short_text(40. * length * length) +

@@ -38,11 +38,21 @@ continuum::DirichletValues section_supports(const Parameters &p,
   return values;
 }
 
-Summary summary_of_solid(const Parameters &p,
-                         const continuum::DisplacementSpace &solid,
-                         const std::chrono::steady_clock::time_point begin)
+std::map<std::string, std::int64_t> sizes_of_solid(const continuum::DisplacementSpace &solid)
 {
-  const MPI_Comm communicator = solid.dof_handler().get_communicator();
+  return {{"grains", 0},
+          {"joints", 0},
+          {"cells", static_cast<std::int64_t>(
+                        solid.dof_handler().get_triangulation().n_global_active_cells())},
+          {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
+          {"multipliers", 0}};
+}
+
+Summary summary_of_run(const Parameters &p,
+                       const MPI_Comm communicator,
+                       const std::map<std::string, std::int64_t> &sizes,
+                       const std::chrono::steady_clock::time_point begin)
+{
   Summary summary;
   summary.title = p.title;
   summary.version = ANTIFORM_VERSION;
@@ -53,21 +63,28 @@ Summary summary_of_solid(const Parameters &p,
   summary.cpu_seconds = usage.cpu_seconds;
   summary.ranks = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
   summary.threads = omp_get_max_threads();
-  summary.sizes = {
-      {"grains", 0},
-      {"joints", 0},
-      {"cells", static_cast<std::int64_t>(
-                    solid.dof_handler().get_triangulation().n_global_active_cells())},
-      {"dofs", static_cast<std::int64_t>(solid.dof_handler().n_dofs())},
-      {"multipliers", 0}};
+  summary.sizes = sizes;
   return summary;
+}
+
+Summary summary_of_solid(const Parameters &p,
+                         const continuum::DisplacementSpace &solid,
+                         const std::chrono::steady_clock::time_point begin)
+{
+  return summary_of_run(p, solid.dof_handler().get_communicator(), sizes_of_solid(solid),
+                        begin);
 }
 
 void summarise_effects(const Parameters &p, const std::int64_t solves, Summary &summary)
 {
   for (const Effect &effect : list_effects(p))
-    summary.effects[effect.name] = {
-        effect.state == Effect::State::present && effect.name != "damping", effect.reason,
-        effect.name == "mesh" ? solves : 0, 0.};
+  {
+    const bool active = effect.state == Effect::State::present && effect.name != "damping";
+    const bool is_solved = effect.name == "mesh" || effect.name == "bonds" ||
+                           effect.name == "bridging domain" ||
+                           effect.name == "surface interface";
+    summary.effects[effect.name] = {active, effect.reason,
+                                    active && is_solved ? solves : 0, 0.};
+  }
 }
 } // namespace antiform::cases

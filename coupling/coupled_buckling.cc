@@ -1,6 +1,7 @@
 #include "coupling/coupled_buckling.h"
 
 #include "continuum/errors.h"
+#include "continuum/linear_buckling.h"
 #include "coupling/symmetric_factor.h"
 
 #include <AnasaziBasicEigenproblem.hpp>
@@ -163,6 +164,12 @@ private:
   const Epetra_Map &space_;
   Map map_;
 };
+
+void ask(const std::function<bool()> &stop)
+{
+  if (stop && stop())
+    throw continuum::BucklingStopped();
+}
 
 struct EigenPair
 {
@@ -329,7 +336,9 @@ std::vector<CoupledMode> lowest_coupled_modes(const StaticSystem &system,
                                               const CoupledBucklingOptions &options)
 {
   const FreeSystem free(system, geometric);
+  ask(options.stop);
   const SaddleFactor at_rest(free, 0.);
+  ask(options.stop);
   if (at_rest.n_unstable() != 0)
     throw NumericalError("linear buckling",
                          "the section is unstable without load. Directions",
@@ -338,7 +347,10 @@ std::vector<CoupledMode> lowest_coupled_modes(const StaticSystem &system,
   const double shift = load_below_all(free, at_rest);
   const SaddleFactor shifted(free, shift);
   const Map map = [&](const VectorXd &x) -> VectorXd
-  { return shifted.solve(free.K * x); };
+  {
+    ask(options.stop);
+    return shifted.solve(free.K * x);
+  };
 
   std::vector<CoupledMode> modes;
   for (const EigenPair &pair :

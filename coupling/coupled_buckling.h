@@ -3,6 +3,7 @@
 #include "coupling/geometric_stiffness.h"
 #include "coupling/static_system.h"
 
+#include <functional>
 #include <vector>
 
 namespace antiform::coupling
@@ -21,6 +22,8 @@ struct CoupledBucklingOptions
   unsigned int n_modes = 2;
   double tolerance = 1e-8; ///< residual over the eigenvalue
   unsigned int max_restarts = 200;
+  /// Asked before every solve; true ends the search by continuum::BucklingStopped.
+  std::function<bool()> stop = {};
 };
 
 /// Lowest positive load factors of (K + factor G) u = 0 on the displacements that keep
