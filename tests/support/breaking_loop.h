@@ -18,8 +18,9 @@ inline FlatJoint brittle_law(const double strength)
   return law;
 }
 
-/// Bond the grains: by @p law where @p may_break says so of both grains, else elastically.
-/// \param tension_factor strength of a joint that may break, over that of the law, by its
+/// Bond the grains: by @p law where @p may_break says so of both grains, else
+/// elastically. \param tension_factor strength of a joint that may break, over that of
+/// the law, by its
 ///                       place
 inline void bond_with_core(Bridged &model,
                            const FlatJoint &law,

@@ -31,9 +31,8 @@ Burst burst(const double step, const std::int64_t n_steps, const std::size_t win
   Bridged model;
   make_block_mesh(model, shape);
   const Rectangle box{-shape.w, shape.core_x + shape.w, -shape.w, shape.core_y + shape.w};
-  model.state.grains =
-      hexagonal_lattice(box, {0.137, 0.271},
-                        [&](const Vec2 &x) { return model.weight.holds_grains(x); });
+  model.state.grains = hexagonal_lattice(
+      box, {0.137, 0.271}, [&](const Vec2 &x) { return model.weight.holds_grains(x); });
   discrete::Random random(7, 0);
   const Vec2 middle{0.5 * shape.core_x, 0.5 * shape.core_y};
   bond_with_core(
@@ -43,8 +42,8 @@ Burst burst(const double step, const std::int64_t n_steps, const std::size_t win
       { return norm(x - middle) < 1.5 ? 0.9 : 1.01 + 0.1 * random.uniform(); });
   const FlatJoint law = elastic_law();
   model.join_bonded(lattice_material(law), shape.h * shape.h);
-  set_displacement(model, solve_patch(model, shape, {strain, strain, 0.},
-                                      model.domain.get()));
+  set_displacement(model,
+                   solve_patch(model, shape, {strain, strain, 0.}, model.domain.get()));
   const double out = shape.w + shape.rim - 1e-9;
   for (unsigned int dof = 0; dof < model.n_mesh_dofs(); ++dof)
   {
