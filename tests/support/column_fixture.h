@@ -9,14 +9,15 @@ namespace antiform::coupling::test
 struct Column
 {
   Bridged model;
-  double begin = -14.; ///< of the grains
+  double begin;        ///< of the grains
   double end = 24.;    ///< of the mesh
   double height = 0.;
   std::vector<unsigned int> end_dofs; ///< x dofs of the mesh's end
   std::vector<std::size_t> held;      ///< grains of the other end
   continuum::Vector load;             ///< of the prestress on the mesh [N]
 
-  Column()
+  explicit Column(const double first = -14.)
+      : begin(first)
   {
     constexpr int n_rows = 12; // even: the column is symmetric about its axis
     height = n_rows * 0.5 * std::sqrt(3.);
