@@ -1,6 +1,7 @@
 // Energy, displacement gap and stable step of the undamped loop over a bridged model with
 // its real masses.
 #include "support/coupling_fixtures.h"
+#include "support/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +69,8 @@ History history(Bridged &model,
                 const double dt,
                 const std::int64_t n_steps,
                 const std::int64_t every,
-                const bool bridged = true)
+                const bool bridged = true,
+                antiform::test::Figure *const figure = nullptr)
 {
   Loop::Options options;
   options.bridged = bridged;
@@ -90,6 +92,9 @@ History history(Bridged &model,
                     result.gap, model.domain->displacement_gap(model.state.grains,
                                                                model.mesh->displacement) /
                                     motion);
+              if (figure != nullptr)
+                figure->add({static_cast<double>(clock.step), result.last - 1.,
+                             result.gap, e.kinetic / first});
             });
   run.advance(n_steps + 1);
   return result;
@@ -102,7 +107,9 @@ TEST(BridgedEnergy, SmoothStartKeepsItsEnergy)
   Bridged model;
   build(model, shape);
   smooth_start(model, shape);
-  const History h = history(model, 0.9 * model.stable_step(), 100000, 500);
+  antiform::test::Figure figure("energy_smooth", "step,drift,gap,kinetic_share");
+  const History h =
+      history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
   std::printf("  smooth: drift %.1e, gap over displacement %.1e\n", h.drift, h.gap);
   // On a linear model the half-step energy is conserved exactly: round-off of 1e5 steps.
   EXPECT_LE(h.drift, 1e-5);
@@ -114,7 +121,9 @@ TEST(BridgedEnergy, WhiteNoiseKeepsItsEnergy)
   Bridged model;
   build(model, small_block(false));
   white_noise(model, amplitude, 3);
-  const History h = history(model, 0.9 * model.stable_step(), 100000, 500);
+  antiform::test::Figure figure("energy_noise", "step,drift,gap,kinetic_share");
+  const History h =
+      history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
   std::printf("  white noise: drift %.1e, gap over displacement %.1e\n", h.drift, h.gap);
   EXPECT_LE(h.drift, 5e-4);
   EXPECT_LE(h.gap, 1e-10);

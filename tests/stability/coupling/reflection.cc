@@ -1,6 +1,7 @@
 // A wave packet runs from the grains through the overlap into the mesh: amplitude that
 // comes back. n is the number of cells per wavelength.
 #include "support/chain_fixture.h"
+#include "support/figures.h"
 
 #include <gtest/gtest.h>
 
@@ -172,6 +173,36 @@ TEST(ChainReflection, OfUnresolvedWavesIsLarge)
   EXPECT_GT(chain({2.5, 2., 4., false}), 0.9);
 }
 
+// The whole curve, from what the mesh cannot carry to the static mismatch of long waves.
+TEST(ChainReflection, FollowsTheWavelengthLong)
+{
+  antiform::test::Figure figure("reflection",
+                                "cells_per_wavelength,width_over_cell,cubic,amplitude");
+  for (const double cells : {4., 8.})
+    for (const bool cubic : {false, true})
+      for (const double n : {2.5, 2.75, 3., 3.14, 3.25, 3.5, 3.75, 4., 4.5, 5., 6., 7.,
+                             8., 10., 12., 16., 20.})
+      {
+        const double amplitude = chain({n, 2., cells, cubic});
+        figure.add({n, cells, cubic ? 1. : 0., amplitude});
+        // The mesh's highest frequency, 2 c / h, is the chain's at n = 3; the packet's
+        // frequencies scatter by 6 %.
+        if (n < 2.6)
+        {
+          EXPECT_NEAR(amplitude, 1., 0.02);
+        }
+        if (n >= 6. && cells == 8.)
+        {
+          EXPECT_LE(amplitude, cubic ? 0.006 : 0.012);
+        }
+        if (n >= 8.)
+        {
+          EXPECT_LE(amplitude, 0.02);
+        }
+        EXPECT_GE(amplitude, 1e-5);
+      }
+}
+
 namespace
 {
 // Long waves do not see the overlap's width of 4 d: r = (Z2 - Z1) / (Z2 + Z1) with Z^2 in
@@ -205,6 +236,24 @@ TEST(LatticeReflection, IsBelowTwoPercentWithFourCells)
       EXPECT_LE(amplitude, 0.02);
       EXPECT_GE(amplitude, 1e-5);
     }
+}
+
+TEST(LatticeReflection, FollowsTheWavelengthLong)
+{
+  antiform::test::Figure figure("reflection_lattice",
+                                "cells_per_wavelength,width_over_cell,cubic,amplitude");
+  for (const double cells : {4., 8.})
+    for (const bool cubic : {false, true})
+      for (const double n : {3., 3.5, 4., 5., 6., 8., 12.})
+      {
+        const double amplitude = lattice({n, 2., cells, cubic});
+        figure.add({n, cells, cubic ? 1. : 0., amplitude});
+        if (n >= 8.)
+        {
+          EXPECT_LE(amplitude, 0.02);
+        }
+        EXPECT_GE(amplitude, 1e-5);
+      }
 }
 
 TEST(LatticeReflection, FallsFurtherWithEightCells)

@@ -1,5 +1,6 @@
 // Linear buckling of a bonded layer in a soft matrix: grains and mesh against grains
 // alone, which is all that a run of grains could do without a mesh.
+#include "support/figures.h"
 #include "support/layered_section.h"
 
 #include "continuum/layer_theory.h"
@@ -69,10 +70,27 @@ struct Comparison
   }
 };
 
+/// Loads side by side, as a table of its own.
+void draw(const std::string &name, const LayerShape &shape, const Comparison &found)
+{
+  std::string file = "buckling_" + name;
+  for (char &c : file)
+    if (c == ' ' || c == '/' || c == ',')
+      c = '_';
+  antiform::test::Figure figure(
+      file, "contrast,cover_over_thickness,mode,grains,coupled,half_waves,share");
+  for (std::size_t k = 0; k < found.coupled.size(); ++k)
+    figure.add({shape.contrast, shape.cover_rows / (2. * shape.half_rows + 1.),
+                static_cast<double>(k + 1), found.grains[k].strain,
+                found.coupled[k].strain, static_cast<double>(found.grains[k].half_waves),
+                found.share});
+}
+
 /// \param most_grains of the coupled model, over those of grains alone
 void compare(const std::string &name, const LayerShape &shape, const double most_grains)
 {
   const Comparison found(name, shape);
+  draw(name, shape, found);
   EXPECT_LE(found.share, most_grains);
   for (std::size_t k = 0; k < 2; ++k)
   {
@@ -200,7 +218,10 @@ TEST(BucklingOfABondedLayer, NeedsNoWideOverlapLong)
 // places where loads are within some tenths of a percent.
 TEST(BucklingOfABondedLayer, HigherModesLong)
 {
-  const Comparison found("contrast 100, H/h 5, eight", shape(100., 25, 60, 140), 8);
+  const LayerShape eight = shape(100., 25, 60, 140);
+  const std::string name = "contrast 100, H/h 5, eight";
+  const Comparison found(name, eight, 8);
+  draw(name, eight, found);
   for (std::size_t k = 0; k < 8; ++k)
     EXPECT_NEAR(found.error(k), 0., k < 2 ? 5e-3 : 1e-2) << k;
 }
@@ -216,6 +237,7 @@ TEST(BucklingOfABondedLayer, OfRandomPackingLong)
     const Comparison found("contrast " + std::to_string(static_cast<int>(contrast)) +
                                ", H/h 1, random " + std::to_string(seed),
                            random, 2, &rock);
+    draw("random " + std::to_string(seed), random, found);
     EXPECT_LE(found.share, 0.4);
     for (std::size_t k = 0; k < 2; ++k)
       EXPECT_NEAR(found.error(k), 0., 0.02);

@@ -1,6 +1,7 @@
 // Patch test of the bridging domain on a hexagonal lattice: uniform strain imposed at the
 // outer boundary of the mesh. The lattice's affine field is its equilibrium, so all
 // errors come from the joining.
+#include "support/figures.h"
 #include "support/lattice_patch.h"
 
 #include "continuum/errors.h"
@@ -71,6 +72,33 @@ TEST(LatticePatch, ErrorFallsWithTheWidthOfTheOverlap)
                    thin = patch_error(block(2., false));
   EXPECT_LE(wide.strain / thin.strain, 0.4);
   EXPECT_LE(wide.force / thin.force, 0.4);
+}
+
+// Linear: all that is left over by the two samplings of the weight's slope, 1 / w, is
+// spread over w; cubic from 4 cells on, where it leaves most of its rims alone.
+TEST(LatticePatch, ErrorFollowsTheWidthOfTheOverlapLong)
+{
+  antiform::test::Figure figure(
+      "patch_error", "width_over_cell,cubic,core_strain,joint_force,mesh_strain");
+  for (const bool cubic : {false, true})
+  {
+    PatchError last;
+    for (const double w : {2., 4., 6., 8., 12., 16.})
+    {
+      const PatchError error = patch_error(block(w, cubic));
+      figure.add({0.5 * w, cubic ? 1. : 0., error.strain, error.force, error.mesh});
+      if (w > 2.)
+      {
+        EXPECT_LT(error.strain, last.strain);
+        EXPECT_LT(error.force, last.force);
+      }
+      last = error;
+    }
+    // From one cell to eight: by the inverse of the width at least.
+    EXPECT_LE(last.strain, cubic ? 5e-4 : 1.5e-3);
+    EXPECT_LE(last.force, cubic ? 1.5e-3 : 4e-3);
+    EXPECT_GE(last.force, 1e-6);
+  }
 }
 
 TEST(LatticePatch, CoarsenedMultipliersTakeCellsOfOneDiameter)

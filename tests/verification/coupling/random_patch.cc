@@ -1,5 +1,6 @@
 // Patch test on random packings: the core of a block cut from a periodic tile, under the
 // mesh's uniform strain, against the tile's own response to that strain.
+#include "support/figures.h"
 #include "support/lattice_patch.h"
 
 #include "discrete/homogenise.h"
@@ -98,6 +99,8 @@ struct PatchError
 {
   double strain = 0., stress = 0., force = 0., mesh = 0.;
   double beside = 0.; ///< of the joint forces within 4 d of the overlap
+  /// Of the joint forces by depth in the core, in strips of 2 d from its rim inwards.
+  std::array<double, 6> by_depth{};
   void enlarge(const PatchError &e)
   {
     strain = std::max(strain, e.strain);
@@ -105,6 +108,8 @@ struct PatchError
     force = std::max(force, e.force);
     mesh = std::max(mesh, e.mesh);
     beside = std::max(beside, e.beside);
+    for (std::size_t k = 0; k < by_depth.size(); ++k)
+      by_depth[k] = std::max(by_depth[k], e.by_depth[k]);
   }
 };
 
@@ -122,6 +127,7 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
   double square = 0., reference = 0., square_beside = 0., reference_beside = 0.;
   const Rectangle inner{4., core_size - 4., 4., core_size - 4.};
   Eigen::Matrix2d stress = Eigen::Matrix2d::Zero(), wanted = stress; // times area
+  std::array<double, 6> square_at{}, reference_at{};
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
     const std::size_t one = joints.first[j], two = joints.second[j];
@@ -143,6 +149,12 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
         exact += stiffness[r] * strain[e] * tile[e][r];
       square += (found - exact) * (found - exact);
       reference += exact * exact;
+      const Vec2 x = 0.5 * (g.reference(one) + g.reference(two));
+      const double depth =
+          std::min({x.x, core_size - x.x, x.y, core_size - x.y, 0.499 * core_size});
+      square_at[static_cast<std::size_t>(0.5 * depth)] +=
+          (found - exact) * (found - exact);
+      reference_at[static_cast<std::size_t>(0.5 * depth)] += exact * exact;
       if (!inner.holds(g.reference(one)) || !inner.holds(g.reference(two)))
       {
         square_beside += (found - exact) * (found - exact);
@@ -155,6 +167,8 @@ PatchError error_of(const RandomBlock &block, const Strain &strain)
   }
   error.force = std::sqrt(square / reference);
   error.beside = std::sqrt(square_beside / reference_beside);
+  for (std::size_t k = 0; k < square_at.size(); ++k)
+    error.by_depth[k] = std::sqrt(square_at[k] / reference_at[k]);
   error.stress = (stress - wanted).norm() / wanted.norm();
   for (const auto &cell : model.solid->cell_states(u.mesh))
     if (cell.weight == 1.)
@@ -224,6 +238,15 @@ void expect_frozen_scatter(const std::uint64_t seed)
   const RandomBlock frozen(seed, false, 1., MultiplierSpace::per_grain);
   const PatchError one = patch_error(free, "multipliers of the mesh"),
                    two = patch_error(frozen, "multipliers per grain");
+  antiform::test::Figure figure("joint_forces_" + std::to_string(seed),
+                                "depth,multipliers_of_mesh,multipliers_per_grain");
+  for (std::size_t k = 0; k < one.by_depth.size(); ++k)
+    figure.add({2. * static_cast<double>(k) + 1., one.by_depth[k], two.by_depth[k]});
+  // Beside the rim the scatter counts; in the middle of the core neither space is felt.
+  EXPECT_GE(two.by_depth.front() / one.by_depth.front(), 1.5);
+  EXPECT_LE(two.by_depth.front(), 0.10);
+  EXPECT_LE(one.by_depth.front(), 0.05);
+  EXPECT_LE(two.by_depth.back(), 0.02);
   EXPECT_GE(two.force / one.force, 1.5);
   EXPECT_GE(two.beside / one.beside, 1.5);
   EXPECT_GE(two.beside, 0.02);
