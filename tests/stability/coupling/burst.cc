@@ -109,7 +109,7 @@ TEST(BridgedBurst, KeepsItsEnergyAndDoesNotDependOnTheStep)
   EXPECT_LT(coarse.cracks, coarse.elements / 2);   // and not dust
   for (const Burst &b : {coarse, fine})
   {
-    EXPECT_LE(b.closure, 1e-2);
+    EXPECT_LE(b.closure, 1e-3); // the limit of runs with breaks
     EXPECT_GT(b.released, 0.05);
     EXPECT_LE(b.gap, 1e-10); // the overlap's constraint holds through it
     // No cap on speeds: what is released bounds them, strain times wave speed, 1.3 here.
