@@ -145,7 +145,27 @@ void add_envelope(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::envelope; });
 }
 
-const std::vector<std::string> planned = {"study", "compare", "report"};
+void add_report(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "report", "one self-contained page of a run: numbers, curves, pictures, cost");
+  command.add_option("DIR", line.report.directory, "directory of a run")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("-o,--output", line.report.page, "the page to write (DIR/report.html)")
+      ->type_name("FILE.html");
+  command
+      .add_option("--steps", line.report.steps,
+                  "fields that are drawn: onset (of cracking), peak, first, last, or the "
+                  "numbers of field files (onset,peak,last)")
+      ->type_name("STEP,STEP");
+  command.footer("Example:\n  antiform report out\n"
+                 "  antiform report out -o anticline.html --steps first,peak,12");
+  command.callback([&line] { line.command = CommandLine::Command::report; });
+}
+
+const std::vector<std::string> planned = {"study", "compare"};
 } // namespace
 
 CommandLine parse_command_line(const std::vector<std::string> &arguments)
@@ -154,7 +174,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
       std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
     throw InputError({"antiform " + arguments.front() +
                       ": does not exist yet in this version. What exists: run, check, "
-                      "theory, parameters, envelope, calibrate."});
+                      "theory, parameters, envelope, calibrate, report."});
 
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
@@ -168,6 +188,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_parameters(app, line);
   add_envelope(app, line);
   add_calibrate(app, line);
+  add_report(app, line);
 
   try
   {

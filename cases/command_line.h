@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cases/program.h"
+#include "cases/report.h"
 #include "cases/theory.h"
 
 #include <string>
@@ -19,7 +20,8 @@ struct CommandLine
     theory,
     parameters,
     envelope,
-    calibrate
+    calibrate,
+    report
   };
   Command command = Command::help;
   std::string help_text;
@@ -29,6 +31,7 @@ struct CommandLine
   bool markdown = false;            ///< parameters --markdown
   std::string name;                 ///< parameters NAME
   std::vector<std::string> sources; ///< envelope SOURCE...
+  ReportOptions report;             ///< report DIR
 };
 
 /// Throws InputError for what it cannot accept, sub-commands that do not exist yet

@@ -7,14 +7,18 @@ import numpy as np
 from picture_style import DPI, SHEAR_CRACK, TENSION_CRACK
 
 
+MOST_MARKS = 15
+
+
 def mark_steps(axes, run, x, y):
-    for number, time in zip(run.step_numbers, run.times):
-        axes.annotate(f"({number})", (100. * time, np.interp(time, x, y)), fontsize=9,
-                      xytext=(0, 9), textcoords="offset points", ha="center", zorder=5,
+    """The numbers of the field files on a curve; of very many files every so many."""
+    every = -(-len(run.times) // MOST_MARKS)
+    for number, row in list(zip(run.step_numbers, run.history_rows()))[::every]:
+        axes.annotate(f"({number})", (100. * x[row], y[row]), fontsize=9, xytext=(0, 9),
+                      textcoords="offset points", ha="center", zorder=5,
                       bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none",
                             "alpha": 0.8})
-        axes.plot(100. * time, np.interp(time, x, y), "o", color="black", markersize=4,
-                  clip_on=False)
+        axes.plot(100. * x[row], y[row], "o", color="black", markersize=4, clip_on=False)
 
 
 def curves(run, path):

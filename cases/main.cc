@@ -110,6 +110,8 @@ int execute(const CommandLine &line, MPI_Comm communicator)
                status = calibrate_deck(line);
              else if (line.command == CommandLine::Command::envelope)
                status = print_envelopes(line.sources, line.json, std::cout);
+             else if (line.command == CommandLine::Command::report)
+               status = write_report(line.report);
              else
                std::cout << (line.markdown ? parameters_markdown()
                                            : describe_parameters(line.name));

@@ -165,10 +165,17 @@ class Figure:
         title = run.summary.get("title", "")
         self.figure.text(LEFT / self.width, 1. - 0.3 / self.height,
                          what + (f": {title}" if title else ""), fontsize=14, weight="bold")
-        state = f"step ({frame.number}), shortening {100. * frame.time:.3g} %"
-        stress = run.stress_at(frame.time)
-        if stress is not None:
-            state += f", axial stress {stress / 1e6:.4g} MPa"
+        if run.modes is not None:
+            state = "the straight section"
+            for mode, stress in zip(run.modes["mode"], run.modes["layer_stress_Pa"]):
+                if mode == frame.time:
+                    state = (f"mode {mode:.0f}, scaled to 1, at a mean stress of the layer of "
+                             f"{stress / 1e6:.4g} MPa")
+        else:
+            state = f"step ({frame.number}), shortening {100. * frame.time:.3g} %"
+            stress = run.stress_at(frame.number)
+            if stress is not None:
+                state += f", axial stress {stress / 1e6:.4g} MPa"
         self.figure.text(LEFT / self.width, 1. - 0.54 / self.height, state, fontsize=11)
 
     def legend(self, handles):

@@ -157,6 +157,21 @@ def read_table(path):
     return table
 
 
+def read_deck(path):
+    """The entries of an effective deck: {"Section/Entry": value}."""
+    entries, sections = {}, []
+    with open(path, encoding="utf-8", errors="replace") as lines:
+        for line in lines:
+            line = line.split("#")[0].strip()
+            if line.startswith("subsection "):
+                sections.append(line[11:].strip())
+            elif line == "end":
+                sections.pop()
+            elif match := re.match(r"set\s+(.+?)\s*=\s*(.*)", line):
+                entries["/".join(sections + [match[1]])] = match[2]
+    return entries
+
+
 class Frame:
     """All fields that were written at one time; what a run does not have is None."""
 
@@ -181,8 +196,9 @@ class Run:
         self.summary = self._read_summary()
         self.history = self._read_table_if_there("history.csv")
         self.cracks = self._read_table_if_there("cracks.csv")
-        self._files = self._read_index()  # {time: {group: path}}
-        self.times = sorted(self._files)
+        self.modes = self._read_table_if_there("modes.csv")  # of a buckling run
+        self._files = self._read_index()  # {time: {group: path}}; of modes their number
+        self.times = sorted(self._files, key=self._number_of)
         self.step_numbers = [self._number_of(time) for time in self.times]
 
     def _path(self, name):
@@ -242,17 +258,31 @@ class Run:
         if which == "peak":
             if not self.history or "axial_stress_Pa" not in self.history:
                 raise RunError("--step peak needs history.csv with axial_stress_Pa.")
-            top = self.history["shortening"][np.argmax(self.history["axial_stress_Pa"])]
-            return [steps[int(np.argmin(abs(np.array(self.times) - top)))]]
+            # The last fields up to it: just after a peak little of it is left.
+            sign = -1. if self.history["shortening"].min() < 0. else 1.  # pulled
+            top = int(np.argmax(sign * self.history["axial_stress_Pa"]))
+            return [[n for n, row in zip(steps, self.history_rows())
+                     if row <= top or n == steps[0]][-1]]
         if not which.isdigit():
             raise RunError(f"--step {which}: give first, last, peak, all or a number.")
         return [int(which)]
 
-    def stress_at(self, time):
-        """Axial stress [Pa] in the history line nearest to @p time; None without one."""
+    def history_rows(self):
+        """The line of history.csv of each time: the nearest in shortening, not before that of
+        the time before, since a section may turn back (snap-back)."""
+        x = self.history["shortening"]
+        row, rows = 0, []
+        for time in self.times:
+            distance = abs(x[row:] - time)
+            row += int(np.argmax(distance <= distance.min() + 1e-9 * np.ptp(x)))
+            rows.append(row)
+        return rows
+
+    def stress_at(self, number):
+        """Axial stress [Pa] at the step @p number; None without history lines."""
         if not self.history or not {"axial_stress_Pa", "shortening"} <= set(self.history):
             return None
         if len(self.history["shortening"]) == 0:
             return None
-        nearest = np.argmin(abs(self.history["shortening"] - time))
-        return float(self.history["axial_stress_Pa"][nearest])
+        row = self.history_rows()[self.step_numbers.index(number)]
+        return float(self.history["axial_stress_Pa"][row])

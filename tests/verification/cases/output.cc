@@ -2,6 +2,7 @@
 #include "support/tiny_run.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -126,6 +127,71 @@ TEST_F(OutputOfARun, MakesPictures)
     EXPECT_EQ(picture.substr(1, 3), "PNG") << name;
     EXPECT_GT(picture.size(), 10000u) << name; // an empty frame compresses to less
   }
+}
+
+TEST_F(OutputOfARun, MakesAPageThatStandsAlone)
+{
+  const std::string page = folder_->path("page.html");
+  const Outcome outcome =
+      run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") + " " ANTIFORM_PROGRAM
+                  " report " + directory() + " -o " + page);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find(page), std::string::npos) << outcome.output;
+  const std::string text = contents(page);
+  EXPECT_EQ(text.find("http"), std::string::npos) << "it asks for a network";
+  EXPECT_LT(text.size(), 15e6);
+  std::size_t pictures = 0;
+  for (std::size_t at = 0; (at = text.find("<img", at)) != std::string::npos; ++at)
+    ++pictures;
+  std::size_t inside = 0;
+  for (std::size_t at = 0; (at = text.find("src=\"data:image/", at)) != std::string::npos;
+       ++at)
+    ++inside;
+  EXPECT_EQ(pictures, inside);
+  EXPECT_GE(pictures, 8u); // curves, four sections at one step at least, rose, ledger, cost
+  const nlohmann::json summary = summary_of(directory());
+  char peak[40];
+  std::snprintf(peak, sizeof peak, "%.4g MPa", result(summary, "peak_stress") / 1e6);
+  EXPECT_NE(text.find(peak), std::string::npos) << peak;
+  for (const auto &[name, effect] : summary.at("effects").items())
+    EXPECT_NE(text.find("<td>" + name + "</td>"), std::string::npos) << name;
+}
+
+TEST_F(OutputOfARun, CountsFracturesNotCracks)
+{
+  // Five cracks a grain's diameter apart across the layer, at three places; two cracks
+  // alone; five in shear; five in the matrix.
+  const std::string script = R"(
+import sys
+sys.path.insert(0, sys.argv[1] + '/cases')
+import numpy as np
+from report_figures import fractures
+x = np.concatenate([np.full(5, at) for at in (25., 0., 10., 40., 50.)] + [[33., 60.]])
+y = np.concatenate([np.tile(np.arange(5.), 5), [0., 0.]])
+mode = np.array(['tension'] * 15 + ['shear'] * 5 + ['tension'] * 7)
+layer = np.array([0.] * 20 + [1.] * 5 + [0.] * 2)
+table = {'reference_x_m': x, 'reference_y_m': y, 'mode': mode, 'layer': layer}
+assert fractures(table, 1., 10.).tolist() == [0., 10., 25.]
+assert fractures(table, 1., 30.).tolist() == []
+assert fractures(table, 0.5, 1.).tolist() != [0., 10., 25.]
+)";
+  const std::string file = folder_->path("fractures.py");
+  std::ofstream(file) << script;
+  const Outcome outcome = run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") + " " +
+                                      python + "-B " + file + " " ANTIFORM_SOURCE_DIR);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST(Report, RefusesWhatIsNoRun)
+{
+  const TemporaryFolder folder;
+  for (const std::string where : {folder.path("nowhere"), folder.path(".")})
+  {
+    const Outcome outcome = run_command(ANTIFORM_PROGRAM " report " + where);
+    EXPECT_EQ(outcome.status, 1) << outcome.output;
+    EXPECT_NE(outcome.output.find(where), std::string::npos) << outcome.output;
+  }
+  EXPECT_FALSE(fs::exists(folder.path("report.html")));
 }
 
 TEST(OutputDirectory, IsBesideTheDeckUnlessNamed)
