@@ -165,7 +165,28 @@ void add_report(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::report; });
 }
 
-const std::vector<std::string> planned = {"study", "compare"};
+void add_compare(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "compare", "finished runs of one scene: differences, scatter and cost side by side");
+  command
+      .add_option("DIR", line.comparison.runs,
+                  "directories of runs; the first is what the others are held against, "
+                  "runs that differ in seeds alone are taken together")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("-o,--output", line.comparison.output,
+                  "directory of the page and the tables (comparison)")
+      ->type_name("DIR");
+  command.footer("Example:\n  antiform run DECK -o pure --set Matrix/Representation=grains\n"
+                 "  antiform run DECK -o coupled\n"
+                 "  antiform compare pure coupled\n"
+                 "Runs of other seeds (--set Layer/Seed=2) tell differences from scatter.");
+  command.callback([&line] { line.command = CommandLine::Command::compare; });
+}
+
+const std::vector<std::string> planned = {"study"};
 } // namespace
 
 CommandLine parse_command_line(const std::vector<std::string> &arguments)
@@ -174,7 +195,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
       std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
     throw InputError({"antiform " + arguments.front() +
                       ": does not exist yet in this version. What exists: run, check, "
-                      "theory, parameters, envelope, calibrate, report."});
+                      "theory, parameters, envelope, calibrate, report, compare."});
 
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
@@ -189,6 +210,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_envelope(app, line);
   add_calibrate(app, line);
   add_report(app, line);
+  add_compare(app, line);
 
   try
   {

@@ -21,7 +21,8 @@ struct CommandLine
     parameters,
     envelope,
     calibrate,
-    report
+    report,
+    compare
   };
   Command command = Command::help;
   std::string help_text;
@@ -32,6 +33,7 @@ struct CommandLine
   std::string name;                 ///< parameters NAME
   std::vector<std::string> sources; ///< envelope SOURCE...
   ReportOptions report;             ///< report DIR
+  ComparisonOptions comparison;     ///< compare DIR DIR...
 };
 
 /// Throws InputError for what it cannot accept, sub-commands that do not exist yet

@@ -27,7 +27,7 @@ def curves(run, path):
         print(f"{path}: not drawn, history.csv has no lines yet", file=sys.stderr)
         return
     # A specimen that is pulled: what grows is extension and tension.
-    sign = -1. if history["shortening"].min() < 0. else 1.
+    sign = run.sign()
     strain, direction = (("shortening", "compression"), ("extension", "tension"))[sign < 0.]
     x = sign * history["shortening"]
     is_specimen = "gauge_strain_axial" in history
@@ -84,3 +84,40 @@ def curves(run, path):
     figure.savefig(path, dpi=DPI)
     plt.close(figure)
     print(path)
+
+
+COLOURS = ("black", "#1f4fa8", "#d95f02", "#1a9641", "#7b3294", "#a6761d", "#e7298a", "#666666")
+
+
+def overlaid_curves(groups, path):
+    """Stress, cracks and fold amplitude of many runs: groups of (name, runs), a colour each."""
+    kinds = (("axial_stress_Pa", 1e-6, "axial stress (MPa)"),
+             (("cracks_tensile", "cracks_shear"), 1., "cracks so far"),
+             ("fold_amplitude_m", 1., "fold amplitude (m)"))
+    first = groups[0][1][0]
+    kinds = [kind for kind in kinds
+             if np.atleast_1d(kind[0])[0] in first.history
+             and not (kind[0] == "fold_amplitude_m" and "gauge_strain_axial" in first.history)]
+    figure, panels = plt.subplots(len(kinds), 1, sharex=True, squeeze=False,
+                                  figsize=(9., 3.2 * len(kinds)))
+    for axes, (names, factor, label) in zip(panels[:, 0], kinds):
+        for n, (group, runs) in enumerate(groups):
+            for k, run in enumerate(runs):
+                columns = [run.history[name] for name in np.atleast_1d(names)
+                           if name in run.history]
+                if not columns:
+                    continue
+                sign = run.sign() if names == "axial_stress_Pa" else 1.
+                axes.plot(100. * run.sign() * run.history["shortening"],
+                          factor * sign * sum(columns), color=COLOURS[n % len(COLOURS)],
+                          linewidth=1.6 if len(runs) == 1 else 1.,
+                          linestyle="-" if n < len(COLOURS) else "--",
+                          label=group if k == 0 else None)
+        axes.set_ylabel(label)
+        axes.grid(color="#dddddd", linewidth=0.6)
+    panels[0, 0].legend(frameon=False, fontsize=9, loc="lower center", ncol=2,
+                        bbox_to_anchor=(0.5, 1.))
+    panels[-1, 0].set_xlabel("shortening (%)" if first.sign() > 0. else "extension (%)")
+    figure.tight_layout()
+    figure.savefig(path)
+    plt.close(figure)

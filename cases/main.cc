@@ -112,6 +112,8 @@ int execute(const CommandLine &line, MPI_Comm communicator)
                status = print_envelopes(line.sources, line.json, std::cout);
              else if (line.command == CommandLine::Command::report)
                status = write_report(line.report);
+             else if (line.command == CommandLine::Command::compare)
+               status = compare_runs(line.comparison);
              else
                std::cout << (line.markdown ? parameters_markdown()
                                            : describe_parameters(line.name));

@@ -18,11 +18,20 @@ namespace
 {
 // Debian's own, which has the packages that .ci/prepare installs.
 const char *const python = "/usr/bin/python3";
-const std::string report_script = ANTIFORM_CASES "/report.py";
 
-/// Run @p command and wait for it. \return its exit status
-int wait_for(const std::vector<std::string> &command)
+/// Run a script of the directory cases, with what it is given, and wait for it.
+/// \return its exit status
+int run_script(const std::string &name, const std::vector<std::string> &given)
 {
+  const std::string script = std::string(ANTIFORM_CASES "/") + name;
+  if (access(script.c_str(), R_OK) != 0)
+    throw InputError({"'" + script +
+                      "' is not there: the source was moved after the build. Build it "
+                      "where it is now, or run its cases/" +
+                      name + " by hand."});
+  // -B: nothing is written beside the sources.
+  std::vector<std::string> command{python, "-B", script};
+  command.insert(command.end(), given.begin(), given.end());
   std::vector<char *> arguments;
   for (const std::string &argument : command)
     arguments.push_back(const_cast<char *>(argument.c_str()));
@@ -31,7 +40,7 @@ int wait_for(const std::vector<std::string> &command)
   const int error = posix_spawn(&process, arguments.front(), nullptr, nullptr,
                                 arguments.data(), environ);
   if (error != 0)
-    throw InputError({"antiform report: '" + command.front() + "' does not start (" +
+    throw InputError({"'" + command.front() + "' does not start (" +
                       std::strerror(error) +
                       "). Pages are drawn by Python 3 with numpy and matplotlib; install "
                       "python3-numpy and python3-matplotlib."});
@@ -44,16 +53,19 @@ int wait_for(const std::vector<std::string> &command)
 
 int write_report(const ReportOptions &options)
 {
-  if (access(report_script.c_str(), R_OK) != 0)
-    throw InputError({"antiform report: '" + report_script +
-                      "' is not there: the source was moved after the build. Build it "
-                      "where it is now, or run its cases/report.py by hand."});
-  // -B: nothing is written beside the sources.
-  std::vector<std::string> command{python, "-B", report_script, options.directory};
+  std::vector<std::string> given{options.directory};
   if (!options.page.empty())
-    command.insert(command.end(), {"--out", options.page});
+    given.insert(given.end(), {"--out", options.page});
   if (!options.steps.empty())
-    command.insert(command.end(), {"--steps", options.steps});
-  return wait_for(command);
+    given.insert(given.end(), {"--steps", options.steps});
+  return run_script("report.py", given);
+}
+
+int compare_runs(const ComparisonOptions &options)
+{
+  std::vector<std::string> given = options.runs;
+  if (!options.output.empty())
+    given.insert(given.end(), {"--out", options.output});
+  return run_script("compare.py", given);
 }
 } // namespace antiform::cases

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace antiform::cases
 {
@@ -12,8 +13,19 @@ struct ReportOptions
   std::string steps;     ///< what is drawn; empty: onset, peak, last
 };
 
+/// What `antiform compare` is asked for.
+struct ComparisonOptions
+{
+  std::vector<std::string> runs; ///< directories; the first is the reference
+  std::string output;            ///< directory; empty: comparison
+};
+
 /// Write one self-contained page of a run (docs/output.md), drawn by cases/report.py.
 /// \return exit status: that of the script, whose messages it leaves to it. Throws
 /// InputError where the script or a Python to run it is missing.
 int write_report(const ReportOptions &options);
+
+/// Finished runs of one scene side by side: page, table and JSON (docs/output.md), by
+/// cases/compare.py; otherwise as write_report().
+int compare_runs(const ComparisonOptions &options);
 } // namespace antiform::cases

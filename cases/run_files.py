@@ -259,13 +259,19 @@ class Run:
             if not self.history or "axial_stress_Pa" not in self.history:
                 raise RunError("--step peak needs history.csv with axial_stress_Pa.")
             # The last fields up to it: just after a peak little of it is left.
-            sign = -1. if self.history["shortening"].min() < 0. else 1.  # pulled
-            top = int(np.argmax(sign * self.history["axial_stress_Pa"]))
+            top = int(np.argmax(self.sign() * self.history["axial_stress_Pa"]))
             return [[n for n, row in zip(steps, self.history_rows())
                      if row <= top or n == steps[0]][-1]]
         if not which.isdigit():
             raise RunError(f"--step {which}: give first, last, peak, all or a number.")
         return [int(which)]
+
+    def sign(self):
+        """1, or -1 of a specimen that is pulled: shortening and stress times it grow."""
+        return -1. if self.history["shortening"].min() < 0. else 1.
+
+    def last_shortening(self):
+        return float((self.sign() * self.history["shortening"]).max())
 
     def history_rows(self):
         """The line of history.csv of each time: the nearest in shortening, not before that of

@@ -128,7 +128,7 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow)
   EXPECT_NE(refusal_of({"fold"}), "");
 }
 
-TEST(CommandLine, ReadsWhatAReportIsAskedFor)
+TEST(CommandLine, ReadsWhatPagesAreAskedFor)
 {
   const CommandLine line =
       parse_command_line({"report", "out", "-o", "a.html", "--steps", "peak,12"});
@@ -137,11 +137,16 @@ TEST(CommandLine, ReadsWhatAReportIsAskedFor)
   EXPECT_EQ(line.report.page, "a.html");
   EXPECT_EQ(line.report.steps, "peak,12");
   EXPECT_NE(refusal_of({"report"}).find("DIR"), std::string::npos);
+
+  const CommandLine comparison = parse_command_line({"compare", "a", "b", "-o", "c"});
+  EXPECT_EQ(comparison.command, CommandLine::Command::compare);
+  EXPECT_EQ(comparison.comparison.runs, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(comparison.comparison.output, "c");
 }
 
 TEST(CommandLine, NamesWhatExistsForCommandsThatDoNotYet)
 {
-  for (const std::string command : {"study", "compare"})
+  for (const std::string command : {"study"})
   {
     const std::string text = refusal_of({command, "x", "--help"});
     EXPECT_NE(text.find("antiform " + command), std::string::npos) << text;

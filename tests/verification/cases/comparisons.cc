@@ -1,0 +1,194 @@
+// antiform compare: what it finds between runs whose differences are known.
+#include "support/tiny_run.h"
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace comparisons_tests
+{
+using namespace antiform::test;
+namespace fs = std::filesystem;
+
+namespace
+{
+class Comparison : public ::testing::Test
+{
+protected:
+  static void SetUpTestSuite()
+  {
+    folder_ = std::make_unique<TemporaryFolder>();
+    const Outcome outcome = run_tiny(folder_->path("run"));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  /// A copy of the run with another seed in its deck, its stresses @p factor as large and
+  /// its cracks @p shift further along the layer [m].
+  static std::string altered(const std::string &name,
+                             const std::string &entry,
+                             const double factor,
+                             const double shift)
+  {
+    const std::string copy = folder_->path(name);
+    fs::copy(folder_->path("run"), copy, fs::copy_options::recursive);
+    const std::string script = R"(
+import csv, re, sys
+folder, entry, factor, shift = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
+name, value = entry.split('=')
+with open(folder + '/deck.prm') as file: text = file.read()
+text, n = re.subn(r'(set %s *= ).*' % name, r'\g<1>' + value, text, count=1)
+assert n == 1, entry
+with open(folder + '/deck.prm', 'w') as file: file.write(text)
+for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * factor),
+                              ('cracks', 'reference_x_m', lambda x: x + shift)):
+    path = f'{folder}/{table}.csv'
+    with open(path) as file: rows = list(csv.DictReader(file))
+    for row in rows: row[column] = repr(change(float(row[column])))
+    with open(path, 'w') as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+)";
+    const std::string file = folder_->path("alter.py");
+    std::ofstream(file) << script;
+    const Outcome outcome =
+        run_command("/usr/bin/python3 -B " + file + " " + copy + " '" + entry + "' " +
+                    std::to_string(factor) + " " + std::to_string(shift));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return copy;
+  }
+
+  static Outcome compare(const std::string &runs, const std::string &out)
+  {
+    return run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") +
+                       " " ANTIFORM_PROGRAM " compare " + runs + " -o " + out);
+  }
+
+  /// The line of @p measure in the last group of a comparison.
+  static nlohmann::json measure_of(const std::string &out, const std::string &measure)
+  {
+    const nlohmann::json all =
+        nlohmann::json::parse(contents(out + "/comparison.json"));
+    nlohmann::json found;
+    for (const nlohmann::json &row : all.at("measures"))
+      if (row.at("measure") == measure)
+        found = row;
+    return found;
+  }
+
+  static std::unique_ptr<TemporaryFolder> folder_;
+};
+std::unique_ptr<TemporaryFolder> Comparison::folder_;
+} // namespace
+
+TEST_F(Comparison, FindsKnownDifferencesOfStressAndPlace)
+{
+  const std::string out = folder_->path("known");
+  const std::string other = altered("other", "Transits per millistrain=77", 1.1, 3.);
+  const Outcome outcome = compare(folder_->path("run") + " " + other, out);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  for (const char *measure : {"peak_stress", "stiffness"})
+    EXPECT_NEAR(measure_of(out, measure).at("difference"), 0.1, 1e-9) << measure;
+  EXPECT_EQ(measure_of(out, "peak_stress").at("verdict"), "unknown"); // no other seed
+  for (const char *measure : {"strain_at_peak", "fold_amplitude", "cracks_at_peak"})
+    EXPECT_EQ(measure_of(out, measure).at("difference"), 0.) << measure;
+  EXPECT_EQ(measure_of(out, "displacement_difference").at("value"), 0.);
+  // All cracks 3 m further: that far, whatever their number.
+  const std::string file = folder_->path("diameter.py");
+  std::ofstream(file) << "import sys\n"
+                         "sys.path.insert(0, sys.argv[1] + '/cases')\n"
+                         "from run_files import Run\n"
+                         "run = Run(sys.argv[2])\n"
+                         "print(2. * run.frame(0).grains.field('radius_m').mean())\n";
+  const Outcome diameter = run_command("/usr/bin/python3 -B " + file +
+                                       " " ANTIFORM_SOURCE_DIR " " + folder_->path("run"));
+  ASSERT_EQ(diameter.status, 0) << diameter.output;
+  EXPECT_NEAR(measure_of(out, "crack_zone_distance").at("value"),
+              3. / std::stod(diameter.output), 1e-6);
+  EXPECT_GT(contents(out + "/comparison.html").size(), 50000u);
+  EXPECT_EQ(contents(out + "/comparison.html").find("http"), std::string::npos);
+}
+
+TEST_F(Comparison, TellsScatterOfSeedsFromADifference)
+{
+  // Peaks 1, 1.02 against 1.01, 1.03 and 1.2, 1.22 of the run's.
+  const std::string first = folder_->path("run") + " " +
+                            altered("seed", "Seed=91", 1.02, 0.) + " ";
+  const std::string out = folder_->path("scatter");
+  const std::string near = altered("near", "Transits per millistrain=78", 1.01, 0.) + " " +
+                           altered("near_seed", "Transits per millistrain=78", 1.03, 0.);
+  // Two runs of one deck and seed are one group too.
+  Outcome outcome = compare(first + near, out);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  nlohmann::json peak = measure_of(out, "peak_stress");
+  EXPECT_EQ(peak.at("runs"), 2);
+  EXPECT_NEAR(peak.at("difference"), 1.02 / 1.01 - 1., 1e-9);
+  // Variances 2e-4 of two runs each: sqrt(2e-4 / 2 + 2e-4 / 2), over the mean.
+  EXPECT_NEAR(peak.at("scatter"), std::sqrt(2e-4) / 1.01, 1e-6);
+  EXPECT_EQ(peak.at("verdict"), "within scatter");
+
+  const std::string far = altered("far", "Transits per millistrain=79", 1.20, 0.) + " " +
+                          altered("far_seed", "Transits per millistrain=79", 1.22, 0.);
+  outcome = compare(first + far, folder_->path("far_out"));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(measure_of(folder_->path("far_out"), "peak_stress").at("verdict"),
+            "more than scatter");
+}
+
+TEST_F(Comparison, MeetsALinearFieldExactlyInGrainsAndCells)
+{
+  // u = A x + b, of a scattered set of grains and of skew cells.
+  const std::string script = R"(
+import sys
+sys.path.insert(0, sys.argv[1] + '/cases')
+import numpy as np
+from comparison_measures import grain_displacement, mesh_displacement
+random = np.random.default_rng(1)
+A, b = np.array([[0.01, -0.02], [0.03, 0.005]]), np.array([0.4, -0.1])
+class Fields:
+    def __init__(self, places, moved):
+        self.points, self.u = places, np.column_stack([moved, np.zeros(len(moved))])
+    def field(self, *names): return self.u
+    def quads(self): return self.cells
+places = 10. * random.random((400, 2))
+moved = places @ A.T + b
+points = 3. + 4. * random.random((50, 2))
+grains = Fields(places + moved, moved)
+found = grain_displacement(grains, points, 1.5)
+assert np.max(abs(found - points @ A.T - b)) < 1e-12
+assert np.isnan(grain_displacement(grains, np.array([[50., 50.]]), 1.5)).all()
+x, y = np.meshgrid(np.arange(11.), np.arange(11.))
+nodes = np.column_stack([(x + 0.2 * np.sin(y)).ravel(), (y + 0.2 * np.cos(x)).ravel()])
+mesh = Fields(nodes, nodes @ A.T + b)
+corner = (11 * np.arange(10)[:, None] + np.arange(10)).ravel()
+mesh.cells = corner[:, None] + np.array([0, 1, 12, 11])
+found = mesh_displacement(mesh, points)
+assert np.max(abs(found - points @ A.T - b)) < 1e-12
+assert np.isnan(mesh_displacement(mesh, np.array([[50., 50.]]))).all()
+)";
+  const std::string file = folder_->path("linear.py");
+  std::ofstream(file) << script;
+  const Outcome outcome =
+      run_command("/usr/bin/python3 -B " + file + " " ANTIFORM_SOURCE_DIR);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(Comparison, RefusesOtherScenesAndUnfinishedRunsAllAtOnce)
+{
+  const std::string thick = altered("thick", "Thickness=11", 1., 0.);
+  Outcome outcome = compare(folder_->path("run") + " " + thick, folder_->path("none"));
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("Layer/Thickness"), std::string::npos) << outcome.output;
+
+  fs::create_directory(folder_->path("empty"));
+  outcome = compare(folder_->path("empty") + " " + folder_->path("nowhere"),
+                    folder_->path("none"));
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("empty"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("nowhere"), std::string::npos) << outcome.output;
+  outcome = compare(folder_->path("run"), folder_->path("none"));
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_FALSE(fs::exists(folder_->path("none")));
+}
+} // namespace comparisons_tests
