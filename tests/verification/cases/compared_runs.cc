@@ -5,14 +5,14 @@
 #include <fstream>
 #include <memory>
 
-namespace comparisons_tests
+namespace compared_runs_tests
 {
 using namespace antiform::test;
 namespace fs = std::filesystem;
 
 namespace
 {
-class Comparison : public ::testing::Test
+class ComparedRuns : public ::testing::Test
 {
 protected:
   static void SetUpTestSuite()
@@ -79,10 +79,10 @@ for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * facto
 
   static std::unique_ptr<TemporaryFolder> folder_;
 };
-std::unique_ptr<TemporaryFolder> Comparison::folder_;
+std::unique_ptr<TemporaryFolder> ComparedRuns::folder_;
 } // namespace
 
-TEST_F(Comparison, FindsKnownDifferencesOfStressAndPlace)
+TEST_F(ComparedRuns, FindsKnownDifferencesOfStressAndPlace)
 {
   const std::string out = folder_->path("known");
   const std::string other = altered("other", "Transits per millistrain=77", 1.1, 3.);
@@ -110,7 +110,7 @@ TEST_F(Comparison, FindsKnownDifferencesOfStressAndPlace)
   EXPECT_EQ(contents(out + "/comparison.html").find("http"), std::string::npos);
 }
 
-TEST_F(Comparison, TellsScatterOfSeedsFromADifference)
+TEST_F(ComparedRuns, TellsScatterOfSeedsFromADifference)
 {
   // Peaks 1, 1.02 against 1.01, 1.03 and 1.2, 1.22 of the run's.
   const std::string first = folder_->path("run") + " " +
@@ -136,7 +136,7 @@ TEST_F(Comparison, TellsScatterOfSeedsFromADifference)
             "more than scatter");
 }
 
-TEST_F(Comparison, MeetsALinearFieldExactlyInGrainsAndCells)
+TEST_F(ComparedRuns, MeetsALinearFieldExactlyInGrainsAndCells)
 {
   // u = A x + b, of a scattered set of grains and of skew cells.
   const std::string script = R"(
@@ -174,7 +174,7 @@ assert np.isnan(mesh_displacement(mesh, np.array([[50., 50.]]))).all()
   EXPECT_EQ(outcome.status, 0) << outcome.output;
 }
 
-TEST_F(Comparison, RefusesOtherScenesAndUnfinishedRunsAllAtOnce)
+TEST_F(ComparedRuns, RefusesOtherScenesAndUnfinishedRunsAllAtOnce)
 {
   const std::string thick = altered("thick", "Thickness=11", 1., 0.);
   Outcome outcome = compare(folder_->path("run") + " " + thick, folder_->path("none"));
@@ -191,4 +191,4 @@ TEST_F(Comparison, RefusesOtherScenesAndUnfinishedRunsAllAtOnce)
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_FALSE(fs::exists(folder_->path("none")));
 }
-} // namespace comparisons_tests
+} // namespace compared_runs_tests
