@@ -1,5 +1,6 @@
 #include "cases/trial.h"
 
+#include "cases/child_runs.h"
 #include "cases/declarations.h"
 #include "coupling/state_file.h"
 
@@ -19,15 +20,6 @@ namespace
 constexpr double elastic_shortening = 1e-4;
 } // namespace
 
-std::string last_line_of(const std::string &file)
-{
-  std::ifstream input(file);
-  std::string line, last;
-  while (std::getline(input, line))
-    if (!line.empty())
-      last = line;
-  return last.empty() ? "nothing was printed" : last;
-}
 const std::vector<MicroName> &micro_names()
 {
   using M = MicroParameters;

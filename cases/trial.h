@@ -77,9 +77,6 @@ Parameters deck_of(const Trial &trial, const Parameters &calibration);
 /// A name for a trial that no other has: test, seed, and a checksum of its deck.
 std::string trial_name(const Trial &trial, const Parameters &deck);
 
-/// The last line of a log that is not empty.
-std::string last_line_of(const std::string &file);
-
 /// Read what a trial left in @p directory; false when it is not finished.
 /// \param longest_shortening where its run was to be given up [-]
 /// Throws std::runtime_error with the reason when it has finished without a result.

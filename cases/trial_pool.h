@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cases/child_runs.h"
 #include "cases/trial.h"
 
 #include <cstddef>
@@ -7,7 +8,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 namespace antiform::cases
@@ -47,20 +47,18 @@ private:
   {
     std::size_t trial = 0; ///< of those asked for
     std::string name;
-    pid_t process = -1;
   };
   std::string folder(const std::string &name) const
   {
     return directory_ + "/trials/" + name;
   }
   bool read(const Trial &trial, const std::string &name, Measurement &measurement);
-  void start(Job &job, const Parameters &deck);
+  void start(const Job &job, const Parameters &deck);
   void record(const Trial &trial,
               const std::string &name,
               const std::string &status,
               const Measurement &measurement,
               double cpu_seconds);
-  void stop(const std::vector<Job> &running) const;
 
   std::string directory_;
   Parameters calibration_;
@@ -69,5 +67,6 @@ private:
   std::set<std::string> recorded_; ///< lines of trials.csv
   int n_run_ = 0, n_found_ = 0;
   double cpu_seconds_ = 0.;
+  ChildRuns children_;
 };
 } // namespace antiform::cases
