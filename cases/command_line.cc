@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <sstream>
 
 namespace antiform::cases
@@ -76,6 +75,25 @@ void add_calibrate(CLI::App &app, CommandLine &line)
       "Exit status: 0 targets met on fresh packings, 1 error of the deck, an option or a "
       "file,\n2 not met (the best rock is written) or a trial failed, 3 interrupted.\n");
   command.callback([&line] { line.command = CommandLine::Command::calibrate; });
+}
+
+void add_study(CLI::App &app, CommandLine &line)
+{
+  CLI::App &command = *app.add_subcommand(
+      "study", "every combination of values of a deck's section Study, in one table");
+  add_deck(command, line.run);
+  add_output(command, line.run);
+  command.add_option("--jobs", line.jobs, "members at once (as many as cores)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command.footer(
+      "Example:\n  antiform study cases/burial-depth/study.prm -o depths\n"
+      "  /usr/bin/python3 cases/study_page.py depths\n"
+      "The same command goes on with a study that was stopped or killed; members that "
+      "have ended are\nnot run again, and a changed section Study adds to them.\n"
+      "Exit status: 0 all members done, 1 error of the deck, an option or a file "
+      "(nothing is run),\n2 some members failed (the others went on), 3 interrupted.\n");
+  command.callback([&line] { line.command = CommandLine::Command::study; });
 }
 
 void add_check(CLI::App &app, CommandLine &line)
@@ -186,17 +204,10 @@ void add_compare(CLI::App &app, CommandLine &line)
   command.callback([&line] { line.command = CommandLine::Command::compare; });
 }
 
-const std::vector<std::string> planned = {"study"};
 } // namespace
 
 CommandLine parse_command_line(const std::vector<std::string> &arguments)
 {
-  if (!arguments.empty() &&
-      std::find(planned.begin(), planned.end(), arguments.front()) != planned.end())
-    throw InputError({"antiform " + arguments.front() +
-                      ": does not exist yet in this version. What exists: run, check, "
-                      "theory, parameters, envelope, calibrate, report, compare."});
-
   CommandLine line;
   CLI::App app("antiform: how a competent rock layer folds and breaks inside weaker rock",
                "antiform");
@@ -211,6 +222,7 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_calibrate(app, line);
   add_report(app, line);
   add_compare(app, line);
+  add_study(app, line);
 
   try
   {

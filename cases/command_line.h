@@ -22,12 +22,14 @@ struct CommandLine
     envelope,
     calibrate,
     report,
-    compare
+    compare,
+    study
   };
   Command command = Command::help;
   std::string help_text;
   RunOptions run;                   ///< deck and overrides of the others too
   TheoryOptions theory;             ///< theory --json, --plot, --friction-angle
+  int jobs = 0;                     ///< study --jobs; 0: as many as cores
   bool json = false;                ///< check --json, envelope --json
   bool markdown = false;            ///< parameters --markdown
   std::string name;                 ///< parameters NAME
@@ -36,7 +38,6 @@ struct CommandLine
   ComparisonOptions comparison;     ///< compare DIR DIR...
 };
 
-/// Throws InputError for what it cannot accept, sub-commands that do not exist yet
-/// included. \param arguments without the program's name
+/// Throws InputError for what it cannot accept. \param arguments without the program's name
 CommandLine parse_command_line(const std::vector<std::string> &arguments);
 } // namespace antiform::cases

@@ -165,6 +165,7 @@ void declare(AbsorbingBoundaryParameters &boundary, Declarations &entries);
 void declare(FracturesParameters &fractures, Declarations &entries);
 void declare(MeasurementCirclesParameters &circles, Declarations &entries);
 void declare(CalibrationParameters &calibration, Declarations &entries);
+void declare(StudyParameters &study, Declarations &entries);
 
 /// A value that may stand alone but not in this scene.
 struct Finding

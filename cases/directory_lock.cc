@@ -31,6 +31,16 @@ DirectoryLock::DirectoryLock(const std::string &directory,
   }
 }
 
+bool DirectoryLock::is_taken(const std::string &directory)
+{
+  const int file = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0)
+    return false;
+  const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file); // and lets go
+  return taken;
+}
+
 DirectoryLock::~DirectoryLock()
 {
   close(file_);

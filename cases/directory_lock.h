@@ -26,6 +26,9 @@ public:
   /// False on file systems that know no locks (some network ones).
   bool is_held() const { return held_; }
 
+  /// Whether somebody holds it now; false where there is no such directory.
+  static bool is_taken(const std::string &directory);
+
 private:
   int file_;
   bool held_ = false;

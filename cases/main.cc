@@ -2,6 +2,7 @@
 #include "cases/command_line.h"
 #include "cases/output_directory.h"
 #include "cases/strength_envelope.h"
+#include "cases/study.h"
 #include "cases/theory.h"
 #include "continuum/errors.h"
 
@@ -90,10 +91,13 @@ int execute(const CommandLine &line, MPI_Comm communicator)
   if (line.command == CommandLine::Command::run)
     return run_deck(line.run, communicator);
 
-  if (line.command == CommandLine::Command::calibrate &&
+  const bool is_study = line.command == CommandLine::Command::study;
+  if ((is_study || line.command == CommandLine::Command::calibrate) &&
       ranks::n_mpi_processes(communicator) > 1)
-    throw InputError({"antiform calibrate runs its trials as processes of its own, as "
-                      "many at once as there are cores. Start it without mpirun."});
+    throw InputError({std::string("antiform ") +
+                      (is_study ? "study runs its members" : "calibrate runs its trials") +
+                      " as processes of its own, as many at once as there are cores. "
+                      "Start it without mpirun."});
   int status = 0;
   together(communicator,
            [&]
@@ -108,6 +112,8 @@ int execute(const CommandLine &line, MPI_Comm communicator)
                status = theory_of_deck(line);
              else if (line.command == CommandLine::Command::calibrate)
                status = calibrate_deck(line);
+             else if (is_study)
+               status = run_study(line.run, line.jobs);
              else if (line.command == CommandLine::Command::envelope)
                status = print_envelopes(line.sources, line.json, std::cout);
              else if (line.command == CommandLine::Command::report)

@@ -11,15 +11,6 @@ namespace
 {
 namespace fs = std::filesystem;
 
-std::string default_output(const std::string &deck)
-{
-  const std::string extension = ".prm";
-  const bool ends_in_it =
-      deck.size() > extension.size() &&
-      deck.compare(deck.size() - extension.size(), extension.size(), extension) == 0;
-  return (ends_in_it ? deck.substr(0, deck.size() - extension.size()) : deck) + "-output";
-}
-
 /// What stands where the run will write: a folder for a file, or the reverse.
 void find_obstacles(const fs::path &directory)
 {
@@ -45,6 +36,15 @@ void find_obstacles(const fs::path &directory)
     throw InputError(problems);
 }
 } // namespace
+
+std::string default_output(const std::string &deck)
+{
+  const std::string extension = ".prm";
+  const bool ends_in_it =
+      deck.size() > extension.size() &&
+      deck.compare(deck.size() - extension.size(), extension.size(), extension) == 0;
+  return (ends_in_it ? deck.substr(0, deck.size() - extension.size()) : deck) + "-output";
+}
 
 void prove_writable(const std::string &directory)
 {

@@ -22,6 +22,9 @@ struct OutputDirectory
 /// given, cannot be written to, or another run is at work in it. For one rank.
 OutputDirectory prepare_output_directory(RunOptions &options);
 
+/// DECK-output beside the deck.
+std::string default_output(const std::string &deck);
+
 /// Permission bits say little (root, read-only mounts, full quotas): write and see. Throws
 /// InputError; leaves nothing in @p directory.
 void prove_writable(const std::string &directory);

@@ -359,6 +359,7 @@ const std::vector<Section> &all_sections()
       {"Damping", "component damping"},
       {"Calibration", "component calibration"},
       {"Measurement circles", "component measurement circles"},
+      {"Study", "by 'antiform study'; the other commands leave it alone"},
       {"Run", "always"},
       {"Output", "always"}};
   return sections;
@@ -368,6 +369,8 @@ bool is_read(const std::string &section, const Parameters &p)
 {
   if (section == "Run" || section == "Output")
     return true;
+  if (section == "Study")
+    return p.study.has_value();
   if (section == "Bridging domain")
     return p.is_bridged();
   if (section == "Matrix" && p.is_bare_mesh())
@@ -429,6 +432,8 @@ void declare_parameters(Parameters &p,
       declare(p.calibration, entries);
     else if (section == "Measurement circles")
       declare(p.measurement_circles, entries);
+    else if (section == "Study")
+      declare(p.study ? *p.study : p.study.emplace(), entries);
     else if (section == "Run")
       declare(p.run, entries);
     else

@@ -96,7 +96,70 @@ public:
     return p;
   }
 
+  /// The section Study alone, with the entries that it names.
+  StudyParameters parse_study()
+  {
+    const auto is_of_others = [](const DeckLine &line)
+    { return section_of(line.path) != "Study"; };
+    for (std::vector<DeckLine> *lines : {&text_.entries, &text_.sections})
+      lines->erase(std::remove_if(lines->begin(), lines->end(), is_of_others),
+                   lines->end());
+    Parameters p;
+    p.study.emplace();
+    dealii::ParameterHandler prm;
+    Declarations declarations(prm);
+    declare_parameters(p, {"Study"}, declarations);
+    refuse_unknown_names(p, declarations);
+    for (const Declarations::Entry &entry : declarations.entries())
+      if (const auto line = last_.find(entry.path);
+          line != last_.end() && section_of(entry.path) == "Study")
+        read_value(entry, line->second, declarations);
+    check_axes(*p.study);
+    if (!problems_.empty())
+      throw InputError(problems_);
+    return *p.study;
+  }
+
 private:
+  void check_axes(const StudyParameters &study)
+  {
+    const auto line = last_.find("Study/Vary");
+    if (line == last_.end())
+    {
+      problems_.push_back(file_ +
+                          ": 'Study/Vary' is missing: this deck has no study. Add "
+                          "'subsection Study' with 'set Vary = Section/Entry = value, "
+                          "value', or 'antiform run' it.");
+      return;
+    }
+    const std::string begin = line->second.place + ": 'Study/Vary' ";
+    std::vector<std::string> found;
+    const std::vector<StudyAxis> axes = read_axes(study.vary, found);
+    for (const std::string &problem : found)
+      problems_.push_back(begin + problem);
+    for (const StudyAxis &axis : axes)
+      for (const StudyEntry &varied : axis)
+      {
+        const Declarations::Entry *const entry = known_.find(varied.path);
+        if (entry == nullptr || section_of(varied.path) == "Study")
+          problems_.push_back(begin + "names '" + varied.path + "': " +
+                              (entry == nullptr
+                                   ? unknown_entry(varied.path)
+                                   : "a study does not vary itself. Name entries of the "
+                                     "scene."));
+        else
+          for (const std::string &value : varied.values)
+            if (!entry->pattern->match(value))
+              problems_.push_back(begin + "gives '" + varied.path + "' = '" + value +
+                                  "'. Give " + range_in_words(*entry) + ".");
+      }
+    if (const double n = n_members(axes); n > study.most_members)
+      problems_.push_back(begin + "makes " + exact_text(n) +
+                          " members, more than 'Study/Most members' = " +
+                          std::to_string(study.most_members) +
+                          ". Take fewer values, or raise that number.");
+  }
+
   /// Components and the two representations decide which sections are read.
   void find_components(Parameters &p)
   {
@@ -352,6 +415,12 @@ Parameters read_deck(const std::string &file, const std::vector<std::string> &ov
   return DeckParser(file, overrides).parse();
 }
 
+StudyParameters read_study(const std::string &file,
+                           const std::vector<std::string> &overrides)
+{
+  return DeckParser(file, overrides).parse_study();
+}
+
 std::string effective_deck(const Parameters &parameters)
 {
   Parameters copy = parameters;
@@ -366,70 +435,5 @@ std::string effective_deck(const Parameters &parameters)
   prm.print_parameters(text, dealii::ParameterHandler::PRM |
                                  dealii::ParameterHandler::KeepDeclarationOrder);
   return text.str();
-}
-
-std::string describe_parameters(const std::string &name)
-{
-  Parameters defaults;
-  dealii::ParameterHandler prm;
-  Declarations declarations(prm);
-  declare_parameters(defaults, names_of(all_sections()), declarations);
-  const auto lower = [](std::string s)
-  {
-    std::transform(s.begin(), s.end(), s.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return s;
-  };
-
-  std::string text;
-  std::vector<std::string> names;
-  for (const Declarations::Entry &entry : declarations.entries())
-  {
-    names.push_back(name_of(entry.path));
-    std::istringstream words(names.back()); // one word of a name will do
-    for (std::string word; words >> word;)
-      names.push_back(word);
-    if (lower(entry.path).find(lower(name)) != std::string::npos)
-      text += entry.path + "\n    default: " + entry.default_value +
-              "\n    range:   " + range_in_words(entry) + "\n    " + entry.documentation +
-              "\n";
-  }
-  if (text.empty())
-  {
-    const std::string near = nearest_name(name, names);
-    throw InputError({"antiform parameters: there is no parameter '" + name + "'. " +
-                      (near.empty() ? "" : "Did you mean '" + near + "'? ") +
-                      "'antiform parameters' lists them all."});
-  }
-  return text;
-}
-
-std::string parameters_markdown()
-{
-  Parameters defaults;
-  dealii::ParameterHandler prm;
-  Declarations declarations(prm);
-  declare_parameters(defaults, names_of(all_sections()), declarations);
-  std::string text =
-      "# Parameters\n\nGenerated by `antiform parameters --markdown`; do not "
-      "edit.\n\nA deck sets only what differs from the default. "
-      "`Components` alone decides what exists: a section that its\nscene does "
-      "not call for is neither read nor checked nor written to `deck.prm`.\n";
-  std::string current = "-";
-  for (const Declarations::Entry &entry : declarations.entries())
-  {
-    if (const std::string section = parent_of(entry.path); section != current)
-    {
-      current = section;
-      text += "\n## " + (section.empty() ? std::string("Above all sections") : section);
-      for (const Section &known : all_sections())
-        if (known.name == section)
-          text += "\n\nRead: " + known.read_when + ".";
-      text += "\n\n| entry | default | range | meaning |\n| --- | --- | --- | --- |\n";
-    }
-    text += "| " + name_of(entry.path) + " | " + entry.default_value + " | " +
-            range_in_words(entry) + " | " + entry.documentation + " |\n";
-  }
-  return text;
 }
 } // namespace antiform::cases

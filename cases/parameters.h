@@ -1,11 +1,13 @@
 #pragma once
 
+#include "cases/study_plan.h"
 #include "discrete/bond_laws.h"
 #include "discrete/fractures.h"
 #include "discrete/joint_types.h"
 #include "discrete/linear_contact.h"
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -307,6 +309,7 @@ struct Parameters
   RunParameters run;
   OutputParameters output;
   CalibrationParameters calibration;
+  std::optional<StudyParameters> study; ///< of 'antiform study' alone
 
   bool has(const std::string &component) const;
   /// Beds of the layer, from below; one without the component beds.
@@ -370,6 +373,11 @@ struct Parameters
 /// Read a deck (with its includes) and the `--set "Section/Entry=value"` overrides.
 /// Throws InputError with every problem of syntax, name, pattern and value at once.
 Parameters read_deck(const std::string &file, const std::vector<std::string> &overrides);
+
+/// What the deck says of a study of its scene, alone: the scene is read member by member,
+/// by read_deck(). Throws InputError with every problem of the section.
+StudyParameters read_study(const std::string &file,
+                           const std::vector<std::string> &overrides);
 
 /// The effective parameters: sections of the listed components only, complete, so that
 /// reading the text gives the same parameters.

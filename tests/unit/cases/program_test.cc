@@ -86,7 +86,7 @@ TEST(Program, HelpsOnceAndEndsWell)
 
 TEST(Program, EndsWithOneForACommandThatDoesNotExistYet)
 {
-  const Outcome outcome = run_program("study deck.prm");
+  const Outcome outcome = run_program("report out");
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("What exists: run, check"), std::string::npos)
       << outcome.output;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "cases/parameters.h"
+
+#include <string>
+#include <vector>
+
+namespace antiform::cases
+{
+/// A member of a study and what it runs.
+struct MemberDeck
+{
+  StudyMember member;
+  std::string scene;        ///< title of the study's deck
+  std::string text;         ///< of its deck
+  std::string checksum;     ///< of the deck and the files that it names
+  double core_seconds = 0.; ///< predicted
+};
+
+/// Read the deck of every member: the study's, its @p overrides and the member's values.
+/// Throws InputError with the problems of all members at once, those that several have
+/// named once; and when two members are the same run.
+std::vector<MemberDeck> read_members(const std::string &file,
+                                     const std::vector<std::string> &overrides,
+                                     const StudyParameters &study);
+
+/// The deck of the study itself, by which it can be repeated; empty when the scene is
+/// none without the values of a member.
+std::string deck_of_study(const std::string &file,
+                          const std::vector<std::string> &overrides,
+                          const StudyParameters &study);
+
+/// Where a member's files are: `DIRECTORY/members/NAME`, `NAME.prm`, `NAME.out`.
+std::string member_folder(const std::string &directory, const std::string &name);
+
+/// The deck that a member is run from, with its checksum.
+void write_member_deck(const std::string &directory, const MemberDeck &deck);
+
+/// Throws InputError when members have been run there from other decks than these: a
+/// study is of one deck. A changed choice of members is none of this.
+void demand_same_decks(const std::string &directory,
+                       const std::vector<MemberDeck> &members);
+} // namespace antiform::cases
