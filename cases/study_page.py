@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""One page of a study: its curves, with theory where members have it, and its table.
+
+  python3 cases/study_page.py DIR
+
+DIR is the output directory of 'antiform study'. Writes DIR/study.html, which needs no
+other file and no network, and the curves alone as DIR/study.svg. The entry with the most
+values is the axis; the others make a curve each, seeds a mean and its points.
+"""
+
+import argparse
+import html
+import io
+import json
+import os
+import sys
+
+try:
+    import matplotlib
+    import numpy as np
+except ImportError as missing:
+    sys.exit(f"study_page.py: {missing}. Install python3-numpy and python3-matplotlib, "
+             f"and use the python3 that has them (this one is {sys.executable}).")
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+COLOURS = ["#1f4fa8", "#c0392b", "#2e8b57", "#762a83", "#b35806", "#1b1b1b"]
+MARKERS = "os^Dv*"
+SCALES = {"Pa": (1e-6, "MPa"), "s": (1., "s")}
+STYLE = """
+body { font: 16px/1.45 system-ui, sans-serif; max-width: 60rem; margin: 1.5rem auto;
+       padding: 0 1rem; color: #222; }
+svg { width: 100%; height: auto; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; }
+th, td { padding: 0.2rem 0.6rem; border-bottom: 1px solid #ddd; text-align: right; }
+th:first-child, td:first-child { text-align: left; }
+.failed { color: #b2182b; }
+@media print { body { max-width: none; } tr { break-inside: avoid; } }
+"""
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def words(name):
+    return name.replace("_", " ").replace("/", " ")
+
+
+class Study:
+    """study.json, and which of its entries is the axis and which tell curves apart."""
+
+    def __init__(self, directory):
+        path = os.path.join(directory, "study.json")
+        if not os.path.exists(path):
+            sys.exit(f"study_page.py: there is no '{path}'. Give the directory that "
+                     "'antiform study' has written.")
+        with open(path) as file:
+            self.record = json.load(file)
+        self.members = self.record["members"]
+        columns = [entry["column"] for entry in self.record["vary"]]
+        texts = {c: list(dict.fromkeys(m["values"][c] for m in self.members))
+                 for c in columns}
+        numeric = [c for c in columns if all(number(t) is not None for t in texts[c])]
+        varied = [c for c in numeric if len(texts[c]) > 1 and c != "seed"]
+        self.axis = max(varied, key=lambda c: len(texts[c])) if varied else None
+        # An entry that is zipped to the axis says nothing more.
+        follows = {c for c in columns if c != self.axis and self.axis is not None and len(
+            {(m["values"][self.axis], m["values"][c]) for m in self.members})
+            == len(texts[self.axis])}
+        self.apart = [c for c in columns if len(texts[c]) > 1 and c != "seed"
+                      and c != self.axis and c not in follows]
+
+    def label(self, key):
+        return ", ".join(f"{words(c)} {v}" if number(v) is not None else v
+                         for c, v in zip(self.apart, key)) or "members"
+
+    def curves(self, column):
+        """Of each curve: its label, points, and their means by the axis."""
+        groups = {}
+        for member in self.members:
+            if member["status"] == "completed" and column in member["figures"]:
+                key = tuple(member["values"][c] for c in self.apart)
+                groups.setdefault(key, []).append((number(member["values"][self.axis]),
+                                                   member["figures"][column]))
+        for key, points in groups.items():
+            x, y = (np.array(values) for values in zip(*sorted(points)))
+            at = np.unique(x)
+            yield self.label(key), x, y, at, np.array([y[x == a].mean() for a in at])
+
+    def panels(self):
+        """Figures to draw, each with that of theory or None."""
+        figures = self.record["collect"]
+        theory = {f["name"][len("theory_"):]: f for f in figures
+                  if f["name"].startswith("theory_")}
+        for figure in figures:
+            name = figure["name"]
+            if not name.startswith("theory_") and " over theory_" not in name:
+                yield figure, next((theory[end] for end in theory
+                                    if name.endswith("_" + end)), None)
+
+
+def draw(study):
+    panels = list(study.panels())
+    if study.axis is None or not panels:
+        return None
+    rows = (len(panels) + 1) // 2
+    columns = min(2, len(panels))
+    figure, axes = plt.subplots(rows, columns, squeeze=False,
+                                figsize=(5.2 * columns, 3.9 * rows + 0.3))
+    for place, (what, theory) in zip(axes.flat, panels):
+        scale, unit = SCALES.get(what["unit"], (1., what["unit"]))
+        ends, named = [np.inf, -np.inf], False
+        for i, (label, x, y, at, mean) in enumerate(study.curves(what["column"])):
+            style = {"color": COLOURS[i % len(COLOURS)]}
+            ends = [min(ends[0], x.min()), max(ends[1], x.max())]
+            joined = {} if theory is None else {"linestyle": "none"}
+            place.plot(at, scale * mean, marker=MARKERS[i % len(MARKERS)], label=label,
+                       markerfacecolor="white", markeredgewidth=1.5, **style, **joined)
+            if len(x) > len(at):
+                place.plot(x, scale * y, ".", alpha=0.5, markersize=4, **style)
+        if theory is not None:
+            for i, (_, _, _, at, mean) in enumerate(study.curves(theory["column"])):
+                place.plot(at, scale * mean, color=COLOURS[i % len(COLOURS)],
+                           linewidth=1.2, zorder=0, label=None if named else "closed form (lines)")
+                named = True
+        if 0. < ends[0] and ends[1] > 30. * ends[0]:
+            place.set_xscale("log")
+        place.set_xlabel(words(study.axis))
+        place.set_ylabel(words(what["name"]) + ("" if unit == "-" else f" ({unit})"))
+        place.grid(color="#dddddd", linewidth=0.6)
+        place.margins(y=0.1)
+    for place in axes.flat[len(panels):]:
+        place.set_visible(False)
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper center", ncol=4, frameon=False)
+    figure.tight_layout(rect=(0., 0., 1., 1. - 0.35 / (3.9 * rows + 0.3)))
+    return figure
+
+
+def svg_of(figure):
+    text = io.StringIO()
+    with matplotlib.rc_context({"svg.hashsalt": "study"}):
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()
+
+
+def table(study):
+    record = study.record
+    heads = [e["column"] for e in record["vary"]] + ["status"]
+    figures = [c["column"] for c in record["collect"]]
+    lines = ["<tr>" + "".join(f"<th>{html.escape(words(h))}</th>"
+                              for h in heads + figures) + "</tr>"]
+    for member in record["members"]:
+        cells = list(member["values"].values()) + [member["status"]]
+        cells += [f"{member['figures'][c]:.6g}" if c in member["figures"] else ""
+                  for c in figures]
+        lines.append(f'<tr class="{member["status"]}">' + "".join(
+            f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
+    return "\n".join(lines)
+
+
+def page(study, picture):
+    record = study.record
+    n_done = sum(m["status"] == "completed" for m in study.members)
+    notes = [f'{m["name"]}: {m["reason"]}' for m in study.members if "reason" in m]
+    notes += record["warnings"]
+    body = [f"<h1>Study {html.escape(record['title'])}</h1>",
+            f"<p>{n_done} of {len(study.members)} members completed, study "
+            f"{record['status']}; antiform {record['version']}.</p>"]
+    if notes:
+        body.append("<ul>" + "".join(f'<li class="failed">{html.escape(n)}</li>'
+                                     for n in notes) + "</ul>")
+    body += [picture[picture.index("<svg"):] if picture else "",
+             f'<div class="wide"><table>{table(study)}</table></div>']
+    return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+            '<meta name="viewport" content="width=device-width">'
+            f"<title>Study {html.escape(record['title'])}</title><style>{STYLE}</style>"
+            "</head><body>\n" + "\n".join(body) + "\n</body></html>\n")
+
+
+def write_whole(path, text):
+    with open(path + ".tmp", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(path + ".tmp", path)
+    print(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("directory", help="output directory of 'antiform study'")
+    directory = parser.parse_args().directory
+    study = Study(directory)
+    figure = draw(study)
+    picture = svg_of(figure) if figure is not None else ""
+    if picture:
+        write_whole(os.path.join(directory, "study.svg"), picture)
+    write_whole(os.path.join(directory, "study.html"), page(study, picture))
+
+
+if __name__ == "__main__":
+    main()
