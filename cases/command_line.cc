@@ -88,7 +88,7 @@ void add_study(CLI::App &app, CommandLine &line)
       ->type_name("N");
   command.footer(
       "Example:\n  antiform study cases/burial-depth/study.prm -o depths\n"
-      "  /usr/bin/python3 cases/study_page.py depths\n"
+      "  antiform report depths\n"
       "The same command goes on with a study that was stopped or killed; members that "
       "have ended are\nnot run again, and a changed section Study adds to them.\n"
       "Exit status: 0 all members done, 1 error of the deck, an option or a file "
@@ -166,8 +166,9 @@ void add_envelope(CLI::App &app, CommandLine &line)
 void add_report(CLI::App &app, CommandLine &line)
 {
   CLI::App &command = *app.add_subcommand(
-      "report", "one self-contained page of a run: numbers, curves, pictures, cost");
-  command.add_option("DIR", line.report.directory, "directory of a run")
+      "report",
+      "one self-contained page of a run or a study: numbers, curves, pictures, cost");
+  command.add_option("DIR", line.report.directory, "directory of a run, or of a study")
       ->required()
       ->type_name("DIR");
   command

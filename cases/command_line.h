@@ -38,6 +38,7 @@ struct CommandLine
   ComparisonOptions comparison;     ///< compare DIR DIR...
 };
 
-/// Throws InputError for what it cannot accept. \param arguments without the program's name
+/// Throws InputError for what it cannot accept.
+/// \param arguments without the program's name
 CommandLine parse_command_line(const std::vector<std::string> &arguments);
 } // namespace antiform::cases

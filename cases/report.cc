@@ -54,6 +54,15 @@ int run_script(const std::string &name, const std::vector<std::string> &given)
 int write_report(const ReportOptions &options)
 {
   std::vector<std::string> given{options.directory};
+  const std::string study = options.directory + "/study.json";
+  if (access(study.c_str(), F_OK) == 0)
+  {
+    if (!options.page.empty() || !options.steps.empty())
+      throw InputError({"antiform report: '" + options.directory +
+                        "' holds a study, whose page is study.html beside its table. "
+                        "Leave out --output and --steps, or name a run in its members/."});
+    return run_script("study_page.py", given);
+  }
   if (!options.page.empty())
     given.insert(given.end(), {"--out", options.page});
   if (!options.steps.empty())

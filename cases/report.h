@@ -8,7 +8,7 @@ namespace antiform::cases
 /// What `antiform report` is asked for.
 struct ReportOptions
 {
-  std::string directory; ///< of a run
+  std::string directory; ///< of a run, or of a study
   std::string page;      ///< file to write; empty: report.html in the directory
   std::string steps;     ///< what is drawn; empty: onset, peak, last
 };
@@ -20,7 +20,8 @@ struct ComparisonOptions
   std::string output;            ///< directory; empty: comparison
 };
 
-/// Write one self-contained page of a run (docs/output.md), drawn by cases/report.py.
+/// Write one self-contained page (docs/output.md): of a run, drawn by cases/report.py, or
+/// of a study, study.html by cases/study_page.py.
 /// \return exit status: that of the script, whose messages it leaves to it. Throws
 /// InputError where the script or a Python to run it is missing.
 int write_report(const ReportOptions &options);
