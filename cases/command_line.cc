@@ -225,6 +225,18 @@ CommandLine parse_command_line(const std::vector<std::string> &arguments)
   add_compare(app, line);
   add_study(app, line);
 
+  const std::string name = arguments.empty() ? "" : arguments.front();
+  std::string names;
+  bool is_there = name.empty() || name.front() == '-'; // an option: --help
+  for (const CLI::App *command : app.get_subcommands({}))
+  {
+    names += (names.empty() ? "" : ", ") + command->get_name();
+    is_there = is_there || command->get_name() == name;
+  }
+  if (!is_there)
+    throw InputError(
+        {"antiform " + name + ": there is no such command. Commands are " + names + "."});
+
   try
   {
     // CLI11 takes the arguments from the back.

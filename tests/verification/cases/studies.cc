@@ -98,6 +98,15 @@ TEST(Study, LeavesALineAMemberAndRunsNoneTwice)
   EXPECT_EQ(contents(out + "/study.csv"), table);
   EXPECT_EQ(ends_of(out), ends);
 
+  // Its page stands alone.
+  const Outcome page = run_command("MPLCONFIGDIR=" + folder.path("matplotlib") +
+                                   " " ANTIFORM_PROGRAM " report " + out);
+  ASSERT_EQ(page.status, 0) << page.output;
+  const std::string text = contents(out + "/study.html");
+  EXPECT_NE(text.find("4 of 4 members completed"), std::string::npos);
+  EXPECT_EQ(text.find("src="), std::string::npos) << "pictures are part of it";
+  EXPECT_NE(text.find("<svg"), std::string::npos);
+
   // One at a time: the same table.
   const std::string single = folder.path("single");
   ASSERT_EQ(run_program(study(buried_deck(), single, four, "--jobs 1")).status, 0);
