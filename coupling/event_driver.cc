@@ -242,6 +242,7 @@ void EventDriver::add_record()
   record.energies.slip = joints.slip;
   record.energies.fracture = joints.fracture;
   record.energies.damping = held_;
+  body_.add_energies(record.energies);
   report_.records.push_back(record);
   largest_force_ = std::max(largest_force_, record.force);
 }

@@ -50,9 +50,11 @@ GrainBalance::GrainBalance(GrainState &state,
 GrainBalance::GrainBalance(GrainState &state,
                            const std::vector<PrescribedMotion> &prescribed,
                            std::vector<GrainLoad> loads,
-                           const std::size_t n_more)
+                           const std::size_t n_more,
+                           std::vector<OperatorSpring> operator_springs)
     : state_(state)
     , loads_(std::move(loads))
+    , operator_springs_(std::move(operator_springs))
 {
   const Grains &grains = state.grains;
   const auto n = static_cast<Eigen::Index>(3 * grains.size() + n_more);
@@ -108,6 +110,11 @@ void GrainBalance::assemble(const std::vector<Eigen::Triplet<double>> &springs)
   }
   for (const Eigen::Triplet<double> &spring : springs)
     add(spring.row(), spring.col(), spring.value());
+  for (const OperatorSpring &spring : operator_springs_)
+  {
+    const Eigen::Index i = index(spring.grain, spring.component);
+    add(i, i, spring.stiffness);
+  }
   for (Eigen::Index i = 0; i < n_unknowns(); ++i)
     if (prescribed_[i] > 0.)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.);
@@ -169,13 +176,19 @@ BalanceRatios GrainBalance::ratios_with(const double further) const
         n_free += 1.;
       }
   }
+  return over_joint_forces(sum / std::max(1., n_free), largest);
+}
+
+BalanceRatios GrainBalance::over_joint_forces(const double mean,
+                                              const double largest) const
+{
   double carried = 0.;
   for (const discrete::JointForce &force : state_.joints.force)
     carried += std::sqrt(force.x * force.x + force.y * force.y); // hypot is slow
   carried /= static_cast<double>(state_.joints.size());
   if (largest == 0.)
     return {};
-  return {sum / std::max(1., n_free) / carried, largest / carried,
+  return {mean / carried, largest / carried,
           element_strength_ > 0. ? largest / element_strength_ : 0.};
 }
 

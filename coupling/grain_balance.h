@@ -59,6 +59,8 @@ public:
   virtual double allowed_share(const Eigen::VectorXd &correction, double cap) const = 0;
   /// Lengths that turn the unknowns into displacements: 1, or radii of grains [m].
   virtual const Eigen::VectorXd &levers() const = 0;
+  /// Add what is stored beside the joints and the walls' contacts: in a mesh.
+  virtual void add_energies(Energies &) const {}
 };
 
 /// A prescribed displacement (component 0, 1) or rotation (2) of a grain.
@@ -67,6 +69,15 @@ struct PrescribedMotion
   std::int32_t grain = 0;
   unsigned int component = 0;
   double rate = 0.; ///< per unit of the load parameter [m] or [rad]; 0: held
+};
+
+/// A spring of the operator, not of the body, from a grain to the ground: for who takes
+/// it off again, since the grains alone would be loose (BridgedBalance).
+struct OperatorSpring
+{
+  std::int32_t grain = 0;
+  unsigned int component = 0; ///< 0: x, 1: y, 2: rotation
+  double stiffness = 0.;      ///< [N/m], [N m]
 };
 
 /// Bonded grains in balance. Unknown 3 i + c is component c of grain i. The operator is
@@ -88,6 +99,8 @@ public:
   Eigen::Index n_unknowns() const override { return prescribed_.size(); }
   const Eigen::VectorXd &residual() override;
   BalanceRatios ratios() const override { return ratios_with(0.); }
+  /// Of unbalanced forces, their mean and largest [N], over what the joints carry.
+  BalanceRatios over_joint_forces(double mean, double largest) const;
   double conjugate_force() const override;
   Eigen::VectorXd solve(const Eigen::VectorXd &r) const override;
   const Eigen::VectorXd &tangent() const override { return tangent_; }
@@ -108,6 +121,11 @@ public:
   /// Springs to the ground beside the joints, by grain [N/m]; empty: none.
   virtual std::vector<double> ground_stiffness() const { return {}; }
 
+  bool is_prescribed(const Eigen::Index unknown) const
+  {
+    return prescribed_[unknown] > 0.;
+  }
+
   GrainState &state() { return state_; }
   const GrainState &state() const { return state_; }
 
@@ -117,7 +135,8 @@ protected:
   GrainBalance(GrainState &state,
                const std::vector<PrescribedMotion> &prescribed,
                std::vector<GrainLoad> loads,
-               std::size_t n_more);
+               std::size_t n_more,
+               std::vector<OperatorSpring> operator_springs = {});
   /// Operator and tangent. \param springs entries beside the joints', both triangles,
   /// rows and columns of prescribed unknowns too
   void assemble(const std::vector<Eigen::Triplet<double>> &springs = {});
@@ -132,6 +151,7 @@ protected:
 private:
   GrainState &state_;
   std::vector<GrainLoad> loads_;
+  std::vector<OperatorSpring> operator_springs_;
   double element_strength_ = 0.; ///< mean, weighted; 0: nothing breaks [N]
   Eigen::VectorXd levers_, tangent_;
   std::optional<ElasticFactor> factor_;

@@ -17,8 +17,8 @@ void stop(Grains &grains)
   for (std::vector<double> *v : {&grains.velocity_x, &grains.velocity_y, &grains.spin})
     std::fill(v->begin(), v->end(), 0.);
 }
+} // namespace
 
-/// The least step at which all grains that have joints are scaled.
 double common_step(const Grains &grains, const discrete::StiffnessSums &sums)
 {
   double squared = 0.;
@@ -28,7 +28,6 @@ double common_step(const Grains &grains, const discrete::StiffnessSums &sums)
                           grains.inertia[i] / (1.5 * sums.rotation[i])});
   return std::sqrt(squared);
 }
-} // namespace
 
 HeldResult
 settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits)

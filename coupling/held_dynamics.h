@@ -27,6 +27,9 @@ struct HeldResult
   double load_work = 0.;  ///< of the constant loads [J]
 };
 
+/// The least step at which scaling reaches all grains that have joints [s].
+double common_step(const discrete::Grains &grains, const discrete::StiffnessSums &sums);
+
 /// Let the grains go from rest, prescribed components held, bonds breaking, until the
 /// body is in balance within the limits; stop them there. Densities are scaled so that
 /// every grain has the same stable step, and put back afterwards. Cracks go to the

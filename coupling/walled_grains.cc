@@ -16,8 +16,9 @@ using discrete::WallContact;
 
 WalledGrains::WalledGrains(GrainState &state,
                            std::vector<BearingWall> walls,
-                           const std::vector<PrescribedMotion> &held)
-    : GrainBalance(state, held, {}, walls.size())
+                           const std::vector<PrescribedMotion> &held,
+                           std::vector<OperatorSpring> operator_springs)
+    : GrainBalance(state, held, {}, walls.size(), std::move(operator_springs))
     , walls_(std::move(walls))
     , in_operator_(walls_.size())
 {
@@ -73,12 +74,14 @@ bool WalledGrains::add_pressing_contacts()
   return has_grown;
 }
 
-void WalledGrains::find_contacts(const double reach, const std::vector<double> &modulus)
+bool WalledGrains::find_contacts(const double reach, const std::vector<double> &modulus)
 {
   for (const BearingWall &bearing : walls_)
     find_wall_contacts(state().grains, *bearing.wall, reach, modulus);
-  if (add_pressing_contacts())
-    assemble_walls();
+  if (!add_pressing_contacts())
+    return false;
+  assemble_walls();
+  return true;
 }
 
 void WalledGrains::visit_state(StateArchive &archive)

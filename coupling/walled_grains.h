@@ -32,7 +32,8 @@ public:
   ///               along them. Throws NumericalError where it does not.
   WalledGrains(GrainState &state,
                std::vector<BearingWall> walls,
-               const std::vector<PrescribedMotion> &held);
+               const std::vector<PrescribedMotion> &held,
+               std::vector<OperatorSpring> operator_springs = {});
 
   const Eigen::VectorXd &residual() override;
   /// A free wall out of balance counts as a grain that is.
@@ -47,7 +48,8 @@ public:
   void assemble_walls();
   /// Contacts with grains that have come within @p reach of a wall [m]; the operator
   /// follows where some press that it does not have. \param modulus E* by region [Pa]
-  void find_contacts(double reach, const std::vector<double> &modulus);
+  /// \return whether the operator has changed
+  bool find_contacts(double reach, const std::vector<double> &modulus);
   /// The operator's contacts, and with them the contacts found on the way: state that a
   /// checkpoint must have beside the walls.
   void visit_state(StateArchive &archive);
