@@ -24,11 +24,10 @@ void check_event_components(const Parameters &p, std::vector<Finding> &findings)
     findings.push_back({{"Walls/Loading", "Beds/Interface"},
                         "the event driver does not know beds that slide. " + otherwise +
                             ", or 'Beds/Interface' = 'cemented'."});
-  if (p.has("matrix") && p.matrix.representation == "continuum" &&
-      p.layer.representation == "grains")
-    findings.push_back({{"Walls/Loading", "Matrix/Representation"},
-                        "the event driver does not know grains with a mesh. " +
-                            otherwise + ", or 'Matrix/Representation' = 'grains'."});
+  if (p.is_bridged() && !p.bridging.constraint)
+    findings.push_back({{"Walls/Loading", "Bridging domain/Constraint"},
+                        "the event driver moves grains and mesh together. " + otherwise +
+                            ", or 'Bridging domain/Constraint' = true."});
   if (p.has("matrix") && p.matrix.representation == "grains" &&
       p.matrix.interface != "cemented")
     findings.push_back({{"Walls/Loading", "Matrix/Interface"},

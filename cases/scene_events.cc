@@ -62,7 +62,7 @@ std::vector<PrescribedMotion> held_motions(const Scene &scene, const double leng
     if (fixed)
       held.push_back({support.grain, 0, 0.});
   }
-  if (held.empty())
+  if (held.empty() && !scene.bridging) // else the mesh keeps it
     held.push_back({guided_grain(scene), 1, 0.});
   return held;
 }
@@ -96,7 +96,9 @@ void add_event_loading(Scene &scene)
   options.modulus = scene.grains->modulus;
   scene.events = &scene.simulation->add(
       std::make_unique<EventLoading>(scene.grains->state, scene.walls, scene.side_walls,
-                                     held_motions(scene, options.length), options),
+                                     held_motions(scene, options.length),
+                                     scene.mesh ? &*scene.mesh : nullptr,
+                                     scene.bridging.get(), options),
       {Stage::forces}, 0, "event driver", reason_for(p, "event driver"));
   if (!scene.pulls())
     scene.wall_motion = &scene.events->walls();

@@ -130,10 +130,10 @@ void BridgedBalance::scale_masses()
     sums.translation[i] += ground[i] / weight[i];
   const double step = common_step(grains, sums);
   discrete::scale_density(grains, sums, weight, step);
-  mesh_.scale_density(domain_.mesh_mass(),
-                      domain_.ties().absolute_row_sums(grains, joints,
-                                                       mesh_.mass.locally_owned_size()),
-                      step);
+  mesh_.scale_density(
+      domain_.mesh_mass(),
+      domain_.ties().absolute_row_sums(grains, joints, mesh_.mass.locally_owned_size()),
+      step);
   domain_.ties().hold(grains);
   domain_.factorise(grains, mesh_.inverse_mass);
 }
@@ -169,7 +169,8 @@ void BridgedBalance::assemble_mesh()
 
   // Two nodes of each part, the second the farthest from the first.
   std::vector<std::array<std::size_t, 2>> ends(n, {n, n});
-  const auto place = [&](const std::size_t dof) { return mesh_.solid.support_point(dof); };
+  const auto place = [&](const std::size_t dof)
+  { return mesh_.solid.support_point(dof); };
   for (std::size_t dof = 0; dof < n; ++dof)
   {
     auto &[first, second] = ends[parts.root(dof)];
@@ -240,9 +241,8 @@ void BridgedBalance::assemble()
   {
     Eigen::VectorXd x(n_unknowns());
     x.head(grains_.n_unknowns()) = grains_.solve(r.head(grains_.n_unknowns()));
-    x.tail(n_mesh()) =
-        mesh_factor_->solve((is_prescribed_.tail(n_mesh()).array() > 0.)
-                                .select(0., r.tail(n_mesh())));
+    x.tail(n_mesh()) = mesh_factor_->solve(
+        (is_prescribed_.tail(n_mesh()).array() > 0.).select(0., r.tail(n_mesh())));
     return x;
   };
   std::vector<ConstrainedInverse::Pin> pins = mesh_pins_;

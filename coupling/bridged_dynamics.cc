@@ -32,9 +32,9 @@ HeldResult BridgedBalance::settle(const HeldDynamics &settings,
   LocalDamping damping(&state, &mesh_, settings.damping);
   of_mesh.damping = damping.mesh_forces();
 
-  const double stable = std::min(
-      discrete::stable_step(grains, state.joints, grains_.ground_stiffness()),
-      mesh_.solid.stable_step(mesh_.inverse_mass));
+  const double stable =
+      std::min(discrete::stable_step(grains, state.joints, grains_.ground_stiffness()),
+               mesh_.solid.stable_step(mesh_.inverse_mass));
   Clock clock;
   clock.dt = settings.step_safety * stable / std::sqrt(1. + settings.damping);
   HeldResult result;

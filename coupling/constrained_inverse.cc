@@ -53,16 +53,15 @@ void ConstrainedInverse::take_off(const std::vector<Pin> &pins,
     const Pin &pin = pins[static_cast<std::size_t>(p)];
     pinned_.push_back(pin.unknown);
     root[p] = std::sqrt(pin.stiffness);
-    of_pins_.col(p) =
-        constrained(solve_(Vector::Unit(constraint_.cols(), pin.unknown)));
+    of_pins_.col(p) = constrained(solve_(Vector::Unit(constraint_.cols(), pin.unknown)));
   }
   if (n == 0)
     return;
   for (Eigen::Index p = 0; p < n; ++p)
     for (Eigen::Index q = 0; q < n; ++q)
-      take_off_(p, q) = (p == q ? 1. : 0.) -
-                        0.5 * root[p] * root[q] *
-                            (of_pins_(pinned_[p], q) + of_pins_(pinned_[q], p));
+      take_off_(p, q) =
+          (p == q ? 1. : 0.) -
+          0.5 * root[p] * root[q] * (of_pins_(pinned_[p], q) + of_pins_(pinned_[q], p));
   // What the body itself resists with, of body and pins together.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(take_off_);
   constexpr double limit = 1e-9;

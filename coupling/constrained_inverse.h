@@ -10,8 +10,9 @@
 namespace antiform::coupling
 {
 /// Inverse of a symmetric stiffness K on the displacements that keep C x = 0. K is known
-/// by solves with K + sum_p k_p e_p e_p^T, which has the springs of the pins beside it and
-/// is positive definite, in parts that need not know of one another (grains and mesh):
+/// by solves with K + sum_p k_p e_p e_p^T, which has the springs of the pins beside it
+/// and is positive definite, in parts that need not know of one another (grains and
+/// mesh):
 ///   S L = C K_s^-1 r,  x_s = K_s^-1 (r - C^T L),  S = C K_s^-1 C^T,
 /// a dense Cholesky factor of the size of the multipliers, formed once; and the pins are
 /// taken off by Woodbury's formula. Two solves of each part for one of the whole.
@@ -56,7 +57,7 @@ private:
   Eigen::SparseMatrix<double, Eigen::RowMajor> constraint_;
   Eigen::LLT<Eigen::MatrixXd> schur_;
   std::vector<Eigen::Index> pinned_;
-  Eigen::MatrixXd of_pins_;   ///< constrained motion under a unit force at each pin
+  Eigen::MatrixXd of_pins_;  ///< constrained motion under a unit force at each pin
   Eigen::MatrixXd take_off_; ///< (1 / k - P^T of_pins)^-1
 };
 } // namespace antiform::coupling

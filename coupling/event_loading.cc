@@ -17,22 +17,42 @@ EventLoading::EventLoading(GrainState &state,
                            std::vector<discrete::Wall> &ends,
                            std::vector<discrete::Wall> &sides,
                            const std::vector<PrescribedMotion> &held,
+                           MeshState *const mesh,
+                           BridgingDomain *const domain,
                            const Options &options)
     : state_(state)
     , ends_(ends)
     , sides_(sides)
     , options_(options)
-    , body_(state, bearing_walls(), held)
-    , driver_(
-          state,
-          body_,
-          [this](const BalanceRatios &limits)
-          { return body_.settle(options_.driver.dynamics, limits); },
-          options.driver)
     , motion_(state)
     , bonds_(state)
-    , walls_(ends, &state, nullptr, nullptr, [](double) { return 0.; })
+    , walls_(ends, &state, mesh, domain, [](double) { return 0.; })
 {
+  if (mesh != nullptr)
+  {
+    bridged_.emplace(state, bearing_walls(), held, *mesh, *domain);
+    mesh_motion_.emplace(*mesh, ends);
+  }
+  else
+    alone_.emplace(state, bearing_walls(), held);
+  driver_.emplace(
+      state, body(),
+      [this](const BalanceRatios &limits)
+      {
+        const HeldDynamics &dynamics = options_.driver.dynamics;
+        return alone_ ? alone_->settle(dynamics, limits)
+                      : bridged_->settle(dynamics, limits);
+      },
+      options.driver);
+}
+
+BalanceOperator &EventLoading::body()
+{
+  return alone_ ? static_cast<BalanceOperator &>(*alone_) : *bridged_;
+}
+const BalanceOperator &EventLoading::body() const
+{
+  return alone_ ? static_cast<const BalanceOperator &>(*alone_) : *bridged_;
 }
 
 std::vector<BearingWall> EventLoading::bearing_walls()
@@ -55,7 +75,7 @@ void EventLoading::run(const Stage, const Clock &clock)
   if (has_begun_)
     load_next();
   has_begun_ = true;
-  const BalanceRatios &ratios = driver_.find_balance().ratios;
+  const BalanceRatios &ratios = driver_->find_balance().ratios;
   worst_.mean = std::max(worst_.mean, ratios.mean);
   worst_.largest = std::max(worst_.largest, ratios.largest);
   worst_.of_strength = std::max(worst_.of_strength, ratios.of_strength);
@@ -68,18 +88,21 @@ void EventLoading::run(const Stage, const Clock &clock)
 
 void EventLoading::load_next()
 {
-  body_.find_contacts(options_.reach, options_.modulus);
+  if (alone_)
+    alone_->find_contacts(options_.reach, options_.modulus);
+  else
+    bridged_->find_contacts(options_.reach, options_.modulus);
   if (options_.pressure > 0. && pressure_steps_ < n_pressure_steps)
     return press();
-  std::vector<BearingWall> &walls = body_.walls();
+  std::vector<BearingWall> &walls = grains().walls();
   if (pressure_steps_ == n_pressure_steps) // the ends are held from now on
   {
     ++pressure_steps_;
     for (std::size_t w = 0; w < ends_.size(); ++w)
       walls[w].is_loaded = false;
-    body_.assemble_walls();
+    grains().assemble_walls(); // pressure is for grains alone
   }
-  driver_.step_towards(options_.target);
+  driver_->step_towards(options_.target);
 }
 
 void EventLoading::press()
@@ -87,16 +110,16 @@ void EventLoading::press()
   ++pressure_steps_;
   const double pressure = options_.pressure * static_cast<double>(pressure_steps_) /
                           static_cast<double>(n_pressure_steps);
-  std::vector<BearingWall> &walls = body_.walls();
+  std::vector<BearingWall> &walls = grains().walls();
   for (std::size_t w = 0; w < walls.size(); ++w)
     walls[w].load = pressure * (w < ends_.size() ? options_.height : options_.length);
 }
 
 void EventLoading::add_energies(Energies &energies) const
 {
-  if (driver_.report().records.empty())
+  if (driver_->report().records.empty())
     return; // nothing has been balanced since a checkpoint was read
-  Energies books = driver_.report().records.back().energies;
+  Energies books = driver_->report().records.back().energies;
   const auto from = books.terms(), to = energies.terms();
   for (std::size_t k = 0; k < to.size(); ++k)
     *to[k] += *from[k];
@@ -108,6 +131,8 @@ void EventLoading::add_energies(Energies &energies) const
 void EventLoading::visit_state(StateArchive &archive)
 {
   motion_.visit_state(archive);
+  if (mesh_motion_)
+    mesh_motion_->visit_state(archive);
   bonds_.visit_state(archive);
   walls_.visit_state(archive);
   visit_walls(archive, "servo walls", sides_);
@@ -127,10 +152,13 @@ void EventLoading::visit_state(StateArchive &archive)
     {
       ++pressure_steps_;
       for (std::size_t w = 0; w < ends_.size(); ++w)
-        body_.walls()[w].is_loaded = false;
+        grains().walls()[w].is_loaded = false;
     }
   }
-  body_.visit_state(archive);
-  driver_.visit_state(archive);
+  if (alone_)
+    alone_->visit_state(archive);
+  else
+    bridged_->visit_state(archive);
+  driver_->visit_state(archive);
 }
 } // namespace antiform::coupling

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "coupling/bridged_balance.h"
 #include "coupling/event_driver.h"
 #include "coupling/joining_components.h"
 #include "coupling/simulation.h"
@@ -12,10 +13,10 @@
 
 namespace antiform::coupling
 {
-/// Loads a scene of grains from one state of balance to the next (EventDriver): a step of
-/// the simulation is a load step and the balance after it, and there is no time. A
-/// pressure on all sides comes up first, in even steps, before the ends shorten or extend
-/// the section.
+/// Loads a scene of grains, or of grains joined to a mesh, from one state of balance to
+/// the next (EventDriver): a step of the simulation is a load step and the balance after
+/// it, and there is no time. A pressure on all sides comes up first, in even steps,
+/// before the ends shorten or extend the section.
 class EventLoading : public Component
 {
 public:
@@ -33,10 +34,14 @@ public:
   /// \param ends   walls that shorten the section, or none; referred to, as the sides are
   /// \param sides  walls that keep the pressure, or none
   /// \param held   what holds or moves grains beside them
+  /// \param mesh,domain what the grains are joined to; null: nothing. The ends, without
+  ///               sides and pressure, take the mesh's prescribed dofs with them
   EventLoading(GrainState &state,
                std::vector<discrete::Wall> &ends,
                std::vector<discrete::Wall> &sides,
                const std::vector<PrescribedMotion> &held,
+               MeshState *mesh,
+               BridgingDomain *domain,
                const Options &options);
 
   void run(Stage stage, const Clock &clock) override;
@@ -44,30 +49,38 @@ public:
   void visit_state(StateArchive &archive) override;
 
   /// Shortening of the section, or its extension, since the pressure stands [-].
-  double load() const { return driver_.load(); }
+  double load() const { return driver_->load(); }
   /// Work per unit of it, over the length that it counts on: force of an end [N].
-  double force() const { return body_.conjugate_force() / options_.length; }
-  BalanceRatios ratios() const { return body_.ratios(); }
+  double force() const { return body().conjugate_force() / options_.length; }
+  BalanceRatios ratios() const { return body().ratios(); }
   /// Largest of all records.
   const BalanceRatios &worst_ratios() const { return worst_; }
-  const DriverReport &report() const { return driver_.report(); }
+  const DriverReport &report() const { return driver_->report(); }
   /// For what an end carries.
   Walls &walls() { return walls_; }
   /// Called at each evaluation of the forces; may throw to give up the load step at hand.
-  void set_watch(std::function<void()> watch) { body_.on_evaluation = std::move(watch); }
+  void set_watch(std::function<void()> watch)
+  {
+    grains().on_evaluation = std::move(watch);
+  }
 
 private:
   std::vector<BearingWall> bearing_walls();
+  BalanceOperator &body();
+  const BalanceOperator &body() const;
+  WalledGrains &grains() { return alone_ ? *alone_ : bridged_->grains(); }
   void load_next();
   void press();
 
   GrainState &state_;
   std::vector<discrete::Wall> &ends_, &sides_;
   Options options_;
-  WalledGrains body_;
-  EventDriver driver_;
+  std::optional<WalledGrains> alone_;     ///< without a mesh
+  std::optional<BridgedBalance> bridged_; ///< with one
+  std::optional<EventDriver> driver_;
   // Their arrays in a checkpoint, and what the walls carry, are those of explicit motion.
   GrainMotion motion_;
+  std::optional<MeshMotion> mesh_motion_;
   Bonds bonds_;
   Walls walls_;
   // State.

@@ -13,11 +13,11 @@ namespace antiform::coupling::test
 /// Heights above the middle of the layer.
 struct CoupledShape
 {
-  double length = 24.;   ///< between the walls [m]
-  double layer = 3.;     ///< half its thickness
-  double core = 5.;      ///< layer and buffer
-  double overlap = 6.;   ///< its width
-  double surface = 19.;  ///< and, below, the base
+  double length = 24.;  ///< between the walls [m]
+  double layer = 3.;    ///< half its thickness
+  double core = 5.;     ///< layer and buffer
+  double overlap = 6.;  ///< its width
+  double surface = 19.; ///< and, below, the base
   double cell = 2.;
   double contrast = 20.; ///< of the moduli of layer and matrix
   std::uint64_t seed = 1;

@@ -141,10 +141,10 @@ FirstBreak predict(const CoupledLayer &layer, const FlatJoint &law)
   for (const discrete::Wall &wall : layer.model.walls)
     for (const discrete::WallContact &contact : wall.contacts)
       if (wall_gap(wall, contact, layer.model.state.grains) <= 0.)
-        energy += 0.5 * contact.weight * contact.stiffness *
-                  std::pow(wall.normal.x * unit.ux[contact.grain] -
-                               0.5 * layer.shape.length,
-                           2);
+        energy +=
+            0.5 * contact.weight * contact.stiffness *
+            std::pow(wall.normal.x * unit.ux[contact.grain] - 0.5 * layer.shape.length,
+                     2);
   for (std::size_t j = 0; j < joints.size(); ++j)
   {
     const std::size_t one = joints.first[j], two = joints.second[j];
@@ -288,7 +288,8 @@ TEST(BridgedBalance, ElasticPathIsThatOfMotionInTime)
   Driven run(implicit, settings);
   run.driver.run_to(shortening);
   const double force = shorten_in_time(in_time, shortening);
-  const double error = difference(place_of(run.body, implicit), place_of(run.body, in_time));
+  const double error =
+      difference(place_of(run.body, implicit), place_of(run.body, in_time));
   std::printf("  difference %.1e, of the force %.1e, gap %.1e m\n", error,
               run.body.conjugate_force() / (force * implicit.shape.length) - 1.,
               run.body.gap());
@@ -327,8 +328,8 @@ TEST(BridgedBalance, EveryRecordIsInBalanceKeepsTheConstraintAndClosesTheBooks)
     open = std::max(open, open_share(books_of(run, layer)));
     gap = std::max(gap, run.body.gap() / largest_displacement(layer.model));
   }
-  std::printf("  books open by %.1e, gap %.1e of the displacement, %zu cracks\n", open, gap,
-              layer.model.state.cracks.size());
+  std::printf("  books open by %.1e, gap %.1e of the displacement, %zu cracks\n", open,
+              gap, layer.model.state.cracks.size());
   EXPECT_LT(open, 1e-3); // as of grains alone
   EXPECT_LT(gap, 1e-13);
   for (const LoadRecord &record : run.driver.report().records)
@@ -407,13 +408,14 @@ TEST(BridgedBalance, RefusesWhatCannotFollow)
                std::invalid_argument);
   std::vector<BearingWall> free = layer.bearing();
   free.back().is_loaded = true;
-  EXPECT_THROW(BridgedBalance(layer.model.state, free, {}, *layer.model.mesh,
-                              *layer.model.domain),
-               std::invalid_argument);
+  EXPECT_THROW(
+      BridgedBalance(layer.model.state, free, {}, *layer.model.mesh, *layer.model.domain),
+      std::invalid_argument);
   // Nothing holds the section in y.
   std::vector<PrescribedDof> &supports = layer.model.mesh->prescribed;
   supports.erase(std::remove_if(supports.begin(), supports.end(),
-                                [](const PrescribedDof &entry) { return entry.wall < 0; }),
+                                [](const PrescribedDof &entry)
+                                { return entry.wall < 0; }),
                  supports.end());
   EXPECT_THROW(body_of(layer), NumericalError);
 }
@@ -438,20 +440,29 @@ double peak_by_events(const CoupledShape &shape)
   DriverSettings settings;
   settings.stop_drop = 0.;
   Driven run(layer, settings);
-  double peak = 0.;
+  double peak = 0., open = 0., open_at_peak = 0.;
   for (int k = 1; k <= n_samples; ++k)
   {
     run.driver.run_to(far * k / n_samples);
-    peak = std::max(peak, layer_stress(layer));
+    open = std::max(open, open_share(books_of(run, layer)));
+    if (layer_stress(layer) > peak)
+    {
+      peak = layer_stress(layer);
+      open_at_peak = open;
+    }
     EXPECT_LT(run.body.gap(), 1e-12 * largest_displacement(layer.model));
   }
-  EXPECT_LT(open_share(books_of(run, layer)), 1e-3);
+  EXPECT_LT(open_at_peak, 1e-3);
+  // The layer comes down in a few long sweeps: kinks of the law within a move are not
+  // those of a trapezoid.
+  EXPECT_LT(open, 5e-3);
   const DriverReport &report = run.driver.report();
   std::printf("  seed %d: %zu grains, events: %.2f MPa; %d load steps, %d batches, %d "
-              "solves, %d hand-overs\n",
+              "solves, %d hand-overs; books open by %.1e, %.1e\n",
               static_cast<int>(shape.seed), layer.n_grains(), 1e-6 * peak,
               static_cast<int>(report.load_steps), static_cast<int>(report.batches),
-              static_cast<int>(report.solves), static_cast<int>(report.hand_overs));
+              static_cast<int>(report.solves), static_cast<int>(report.hand_overs),
+              open_at_peak, open);
   return peak;
 }
 
@@ -481,8 +492,8 @@ double peak_in_time(const CoupledShape &shape, const std::int64_t n_steps)
 }
 } // namespace
 
-// A peak is chaotic, as of grains alone; means agree. 200 000 steps are some 2000 transits
-// of a wave along the section.
+// A peak is chaotic, as of grains alone; means agree. 200 000 steps are some 2000
+// transits of a wave along the section.
 TEST(BridgedBalance, PeaksAreThoseOfSlowMotionInTheMeanLong)
 {
   double ratio = 0.;
