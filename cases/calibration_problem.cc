@@ -12,7 +12,7 @@ namespace antiform::cases
 {
 namespace
 {
-std::string short_text(const double number)
+std::string six_digits(const double number)
 {
   std::ostringstream text;
   text.precision(6);
@@ -85,7 +85,7 @@ std::vector<Target> targets_of(const CalibrationParameters &c)
     targets.push_back({"ucs", uniaxial, false, wanted.uniaxial, c.uniaxial_tolerance});
   for (std::size_t k = 0; k < std::min(c.confinements.size(), wanted.strengths.size());
        ++k)
-    targets.push_back({"strength_at_" + short_text(1e-6 * c.confinements[k]) + "MPa",
+    targets.push_back({"strength_at_" + six_digits(1e-6 * c.confinements[k]) + "MPa",
                        {Test::Kind::compression, c.confinements[k]},
                        false,
                        wanted.strengths[k],
@@ -225,8 +225,8 @@ void check_strengths(const CalibrationParameters &c,
           target.value <= target.test.confinement)
         findings.push_back(
             {{"Calibration/Strengths", "Calibration/Confinements", "Calibration/UCS"},
-             "sigma_1 = " + short_text(target.value) +
-                 " Pa at sigma_3 = " + short_text(target.test.confinement) +
+             "sigma_1 = " + six_digits(target.value) +
+                 " Pa at sigma_3 = " + six_digits(target.test.confinement) +
                  " Pa: strengths rise with confinement, and exceed it. Give both in "
                  "rising order, in Pa."});
       before = target.test.confinement;
@@ -238,7 +238,7 @@ void check_strengths(const CalibrationParameters &c,
         if (other.name == "ucs" && other.value <= target.value)
           findings.push_back({{"Calibration/UCS", "Calibration/Tensile strength"},
                               "not above the tensile strength, " +
-                                  short_text(target.value) +
+                                  six_digits(target.value) +
                                   " Pa. No rock is so; give both in Pa."});
 }
 } // namespace

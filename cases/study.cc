@@ -96,6 +96,15 @@ std::vector<std::string> changes_of_choice(const std::set<std::string> &former,
   return lines;
 }
 
+/// Of all members, had none been run [s].
+double predicted_seconds(const std::vector<MemberDeck> &decks, const int jobs)
+{
+  double sum = 0.;
+  for (const MemberDeck &deck : decks)
+    sum += deck.core_seconds;
+  return sum / std::min(jobs, static_cast<int>(decks.size()));
+}
+
 std::string end_in_words(const StudyMembers &members, const double seconds)
 {
   const auto said = [&](const std::string &status, const std::string &what)
@@ -140,7 +149,8 @@ int run_study(const RunOptions &given, const int jobs_wanted)
     coupling::replace_file(options.output + "/deck.prm", deck);
   log.line("antiform " ANTIFORM_VERSION ": study of " + title + ", " +
            std::to_string(decks.size()) + " members, " + std::to_string(jobs) +
-           " at once");
+           " at once, predicted to take " +
+           duration_text(predicted_seconds(decks, jobs)));
   for (const std::string &line : changes_of_choice(former, decks))
     log.line(line);
   catch_interrupts();

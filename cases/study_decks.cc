@@ -1,13 +1,16 @@
 #include "cases/study_decks.h"
 
 #include "cases/calibrate.h"
+#include "cases/closed_forms.h"
 #include "cases/deck_reader.h"
 #include "cases/run_deck.h"
 #include "cases/sizes.h"
+#include "cases/theory.h"
 #include "coupling/output/whole_file.h"
 #include "coupling/state_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -16,6 +19,8 @@ namespace antiform::cases
 {
 namespace
 {
+constexpr double start_seconds = 0.3; // of a program
+
 const std::string checksum_line = "# A member of a study. Checksum ";
 
 std::string hexadecimal_crc(const std::string &text)
@@ -86,6 +91,18 @@ std::vector<std::string> overrides_of_scene(const std::vector<std::string> &over
   return of_scene;
 }
 
+std::map<std::string, Result> theory_figures(const Parameters &p)
+{
+  std::map<std::string, Result> figures;
+  for (const TheorySection &section : closed_forms(p, TheoryOptions().friction_angle))
+    for (const TheoryRow &row : section.rows)
+      for (const Quantity &q : row.quantities)
+        if (row.applies && std::isfinite(q.value))
+          figures["theory/" + section.name + "/" + row.name +
+                  (q.name.empty() ? "" : "/" + q.name)] = {q.value, q.unit};
+  return figures;
+}
+
 MemberDeck member_deck(const StudyMember &member, const Parameters &p)
 {
   const RunDeck deck(p);
@@ -93,7 +110,7 @@ MemberDeck member_deck(const StudyMember &member, const Parameters &p)
   result.member = member;
   result.checksum = hexadecimal_crc(deck.everything);
   result.text = effective_deck(p);
-  result.core_seconds = predict_sizes(p, SectionGeometry(p)).core_seconds;
+  result.core_seconds = start_seconds + predict_sizes(p, SectionGeometry(p)).core_seconds;
   return result;
 }
 } // namespace
@@ -106,6 +123,9 @@ std::vector<MemberDeck> read_members(const std::string &file,
   const std::vector<StudyAxis> axes = read_axes(study.vary, ignored);
   const std::vector<std::string> paths = paths_of(axes);
   const bool names_title = std::find(paths.begin(), paths.end(), "Title") != paths.end();
+  const bool collects_theory = std::any_of(
+      study.collect.begin(), study.collect.end(),
+      [](const std::string &name) { return name.find("theory/") != std::string::npos; });
   const std::vector<std::string> of_scene = overrides_of_scene(overrides);
   std::vector<std::string> lost;
   for (const std::string &text : of_scene)
@@ -139,6 +159,8 @@ std::vector<MemberDeck> read_members(const std::string &file,
         p.title += (p.title.empty() ? "" : ": ") + member.label;
       decks.push_back(member_deck(member, p));
       decks.back().scene = scene;
+      if (collects_theory)
+        decks.back().theory = theory_figures(p);
     }
     catch (const InputError &error)
     {

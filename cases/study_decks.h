@@ -1,7 +1,9 @@
 #pragma once
 
 #include "cases/parameters.h"
+#include "cases/summary.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,7 +16,10 @@ struct MemberDeck
   std::string scene;        ///< title of the study's deck
   std::string text;         ///< of its deck
   std::string checksum;     ///< of the deck and the files that it names
-  double core_seconds = 0.; ///< predicted
+  double core_seconds = 0.; ///< predicted, with the start of a program
+  /// What 'antiform theory' says of its scene, "theory/critical/scene_smooth/wavelength";
+  /// empty unless the study collects of it.
+  std::map<std::string, Result> theory;
 };
 
 /// Read the deck of every member: the study's, its @p overrides and the member's values.

@@ -10,8 +10,6 @@
 
 namespace antiform::cases
 {
-namespace
-{
 std::string duration_text(const double seconds)
 {
   char text[48];
@@ -23,7 +21,6 @@ std::string duration_text(const double seconds)
     std::snprintf(text, sizeof text, "%.1f hours", seconds / 3600.);
   return text;
 }
-} // namespace
 
 StudyMembers::StudyMembers(std::string directory,
                            std::vector<MemberDeck> decks,
@@ -50,12 +47,21 @@ std::size_t StudyMembers::count(const std::string &status) const
                                                 { return o.status == status; }));
 }
 
+/// With what theory says of its scene.
+RunOutcome StudyMembers::outcome_of(const std::size_t k) const
+{
+  RunOutcome outcome = read_outcome(folder(k));
+  if (outcome.has_ended())
+    outcome.figures.insert(decks_[k].theory.begin(), decks_[k].theory.end());
+  return outcome;
+}
+
 /// What has ended in a former session; the rest waits.
 void StudyMembers::find_ended()
 {
   for (std::size_t k = 0; k < decks_.size(); ++k)
   {
-    outcomes_[k] = read_outcome(folder(k));
+    outcomes_[k] = outcome_of(k);
     if (!outcomes_[k].has_ended())
     {
       waiting_.push_back(k);
@@ -80,7 +86,7 @@ bool StudyMembers::start(const std::size_t k)
     return false;
   }
   if (strangers_.count(k) > 0)
-    outcomes_[k] = read_outcome(folder(k));
+    outcomes_[k] = outcome_of(k);
   if (outcomes_[k].has_ended())
   {
     ++n_found_;
@@ -127,7 +133,7 @@ void StudyMembers::end(const ChildRuns::Ended &ended)
 {
   const std::size_t k = ended.key;
   RunOutcome &outcome = outcomes_[k];
-  outcome = read_outcome(folder(k));
+  outcome = outcome_of(k);
   if (ended.status == 3)
     outcome.status = "interrupted"; // someone has signalled the member itself
   else if (!outcome.has_ended())
@@ -156,7 +162,7 @@ bool StudyMembers::run()
       for (std::size_t k = 0; k < decks_.size(); ++k)
         if (outcomes_[k].status == "running")
         {
-          outcomes_[k] = read_outcome(folder(k));
+          outcomes_[k] = outcome_of(k);
           if (!outcomes_[k].has_ended())
             outcomes_[k].status = "interrupted";
         }

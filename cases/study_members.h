@@ -12,6 +12,9 @@
 
 namespace antiform::cases
 {
+/// "43 s", "12 minutes", "3.1 hours".
+std::string duration_text(double seconds);
+
 /// Runs the members of a study as processes, several at once. What has ended is not run
 /// again; what has a checkpoint goes on from it.
 class StudyMembers
@@ -41,6 +44,7 @@ private:
   {
     return member_folder(directory_, decks_[k].member.name);
   }
+  RunOutcome outcome_of(std::size_t k) const;
   void find_ended();
   void start_what_fits();
   bool start(std::size_t k);

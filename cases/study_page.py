@@ -68,12 +68,15 @@ class Study:
         numeric = [c for c in columns if all(number(t) is not None for t in texts[c])]
         varied = [c for c in numeric if len(texts[c]) > 1 and c != "seed"]
         self.axis = max(varied, key=lambda c: len(texts[c])) if varied else None
-        # An entry that is zipped to the axis says nothing more.
-        follows = {c for c in columns if c != self.axis and self.axis is not None and len(
-            {(m["values"][self.axis], m["values"][c]) for m in self.members})
-            == len(texts[self.axis])}
-        self.apart = [c for c in columns if len(texts[c]) > 1 and c != "seed"
-                      and c != self.axis and c not in follows]
+        self.apart = []
+        for column in columns:
+            # An entry that is zipped to one before it says nothing more.
+            said = [c for c in [self.axis] + self.apart if c is not None]
+            follows = any(len({(m["values"][c], m["values"][column])
+                               for m in self.members}) == len(texts[c]) for c in said)
+            if len(texts[column]) > 1 and column not in ("seed", self.axis) \
+                    and not follows:
+                self.apart.append(column)
 
     def label(self, key):
         return ", ".join(f"{words(c)} {v}" if number(v) is not None else v
@@ -93,15 +96,18 @@ class Study:
             yield self.label(key), x, y, at, np.array([y[x == a].mean() for a in at])
 
     def panels(self):
-        """Figures to draw, each with that of theory or None."""
+        """Figures to draw, each with its closed form or None, and what 'antiform theory'
+        says in the same unit."""
         figures = self.record["collect"]
         theory = {f["name"][len("theory_"):]: f for f in figures
                   if f["name"].startswith("theory_")}
+        said = [f for f in figures if f["name"].startswith("theory/")]
         for figure in figures:
             name = figure["name"]
-            if not name.startswith("theory_") and " over theory_" not in name:
-                yield figure, next((theory[end] for end in theory
-                                    if name.endswith("_" + end)), None)
+            if not name.startswith(("theory_", "theory/")) and " over theory" not in name:
+                yield (figure, next((theory[end] for end in theory
+                                     if name.endswith("_" + end)), None),
+                       [f for f in said if f["unit"] == figure["unit"] != "s"])
 
 
 def draw(study):
@@ -112,12 +118,13 @@ def draw(study):
     columns = min(2, len(panels))
     figure, axes = plt.subplots(rows, columns, squeeze=False,
                                 figsize=(5.2 * columns, 3.9 * rows + 0.3))
-    for place, (what, theory) in zip(axes.flat, panels):
+    for place, (what, theory, said) in zip(axes.flat, panels):
         scale, unit = SCALES.get(what["unit"], (1., what["unit"]))
-        ends, named = [np.inf, -np.inf], False
+        ends, heights, named = [np.inf, -np.inf], [np.inf, -np.inf], False
         for i, (label, x, y, at, mean) in enumerate(study.curves(what["column"])):
             style = {"color": COLOURS[i % len(COLOURS)]}
             ends = [min(ends[0], x.min()), max(ends[1], x.max())]
+            heights = [min(heights[0], y.min()), max(heights[1], y.max())]
             joined = {} if theory is None else {"linestyle": "none"}
             place.plot(at, scale * mean, marker=MARKERS[i % len(MARKERS)], label=label,
                        markerfacecolor="white", markeredgewidth=1.5, **style, **joined)
@@ -126,10 +133,18 @@ def draw(study):
         if theory is not None:
             for i, (_, _, _, at, mean) in enumerate(study.curves(theory["column"])):
                 place.plot(at, scale * mean, color=COLOURS[i % len(COLOURS)],
-                           linewidth=1.2, zorder=0, label=None if named else "closed form (lines)")
+                           linewidth=1.2, zorder=0,
+                           label=None if named else "closed form (lines)")
                 named = True
+        for line, style in zip(said, ["--", ":", "-."] * len(said)):
+            name = " ".join(words(part) for part in line["name"].split("/")[-2:])
+            for i, (_, _, _, at, mean) in enumerate(study.curves(line["column"])):
+                place.plot(at, scale * mean, color=COLOURS[i % len(COLOURS)], zorder=0,
+                           linewidth=1.2, linestyle=style, label=None if i else name)
         if 0. < ends[0] and ends[1] > 30. * ends[0]:
             place.set_xscale("log")
+        if 0. < heights[0] and heights[1] > 15. * heights[0]:
+            place.set_yscale("log")
         place.set_xlabel(words(study.axis))
         place.set_ylabel(words(what["name"]) + ("" if unit == "-" else f" ({unit})"))
         place.grid(color="#dddddd", linewidth=0.6)
@@ -137,8 +152,12 @@ def draw(study):
     for place in axes.flat[len(panels):]:
         place.set_visible(False)
     handles, labels = axes.flat[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper center", ncol=4, frameon=False)
-    figure.tight_layout(rect=(0., 0., 1., 1. - 0.35 / (3.9 * rows + 0.3)))
+    # As many beside each other as the width of the page holds.
+    width = 5.2 * columns
+    beside = max(1, int(width / (0.09 * max(map(len, labels)) + 0.7)))
+    lines = -(-len(labels) // beside)
+    figure.legend(handles, labels, loc="upper center", ncol=beside, frameon=False)
+    figure.tight_layout(rect=(0., 0., 1., 1. - (0.1 + 0.22 * lines) / (3.9 * rows + 0.3)))
     return figure
 
 

@@ -26,7 +26,7 @@ std::string study(const std::string &deck,
 /// Two shortenings of a static section, smooth and cemented: half a second each.
 const std::vector<std::string> four{
     "Study/Vary=Run/End shortening = 1e-3, 2e-3; Matrix/Interface = cemented, sliding",
-    "Study/Collect=wall_force, shortening"};
+    "Study/Collect=wall_force, shortening, theory/strut/buckling_stress"};
 
 nlohmann::json record_of(const std::string &directory)
 {
@@ -89,6 +89,13 @@ TEST(Study, LeavesALineAMemberAndRunsNoneTwice)
   expect_same_file("history.csv", folder.path("alone"),
                    out + "/members/end-shortening-2e-3_interface-sliding");
 
+  // Theory's value is that of 'antiform theory'.
+  const Outcome theory = run_program("theory " + buried_deck() + " --json");
+  const nlohmann::json strut = nlohmann::json::parse(theory.output).at("strut");
+  EXPECT_EQ(record_of(out).at("members").at(0).at("figures").at(
+                "theory_strut_buckling_stress_Pa"),
+            strut.at("buckling_stress").at("value"));
+
   // Once more: nothing is run, nothing changes.
   const auto ends = ends_of(out);
   const Outcome again = run_program(study(buried_deck(), out, four));
@@ -98,14 +105,14 @@ TEST(Study, LeavesALineAMemberAndRunsNoneTwice)
   EXPECT_EQ(contents(out + "/study.csv"), table);
   EXPECT_EQ(ends_of(out), ends);
 
-  // Its page stands alone.
-  const Outcome page = run_command("MPLCONFIGDIR=" + folder.path("matplotlib") +
-                                   " " ANTIFORM_PROGRAM " report " + out);
-  ASSERT_EQ(page.status, 0) << page.output;
-  const std::string text = contents(out + "/study.html");
-  EXPECT_NE(text.find("4 of 4 members completed"), std::string::npos);
-  EXPECT_EQ(text.find("src="), std::string::npos) << "pictures are part of it";
-  EXPECT_NE(text.find("<svg"), std::string::npos);
+  const Outcome page =
+      run_command("MPLCONFIGDIR=" + folder.path("matplotlib") +
+                  " " ANTIFORM_PROGRAM " report " + out);
+  EXPECT_EQ(page.status, 0) << page.output;
+  const std::string html = contents(out + "/study.html");
+  EXPECT_EQ(occurrences(html, "<svg"), 1u);
+  EXPECT_EQ(occurrences(html, "<tr class=\"completed\">"), 4u);
+  EXPECT_EQ(occurrences(html, "src="), 0u); // it needs no other file
 
   // One at a time: the same table.
   const std::string single = folder.path("single");
@@ -158,6 +165,30 @@ TEST(Study, GoesOnAfterThreeKillsToTheSameTable)
                      parts + "/members/" + name);
   for (const auto &[name, status] : statuses(parts))
     EXPECT_EQ(status, "completed") << name;
+}
+
+TEST(Study, WaitsForARunThatAKilledStudyHasLeft)
+{
+  // As when a study is killed whose member does not hear of it.
+  const std::vector<std::string> one =
+      unbreakable({"Run/End shortening=6e-3", "Run/Longest shortening=1e-2",
+                   "Study/Vary=Layer/Seed = 1"});
+  const TemporaryFolder folder;
+  const std::string out = folder.path("out"), member = out + "/members/seed-1";
+  {
+    RunningProgram stopped(study(tiny_deck(), out, one));
+    ASSERT_TRUE(stopped.wait_until([&] { return fs::exists(member + ".prm"); }));
+    stopped.send(SIGINT);
+    EXPECT_EQ(stopped.wait(), 3);
+  }
+  fs::remove_all(member);
+  RunningProgram left("run " + member + ".prm -o " + member);
+  ASSERT_TRUE(left.wait_until([&] { return fs::exists(member + "/history.csv"); }));
+  const Outcome outcome = run_program(study(tiny_deck(), out, one));
+  EXPECT_EQ(left.wait(), 0); // nobody has disturbed it
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  for (const char *part : {"waiting for it", "1 completed (1 of them found)"})
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << outcome.output;
 }
 
 TEST(Study, StopsAtASignalWithCheckpoints)
@@ -328,29 +359,35 @@ TEST(Study, OfADeckLeavesRunAndCheckAlone)
 
 TEST(Study, OfBurialDepthMeetsTheClosedFormsFromThinToDeepLong)
 {
+  // Three contrasts, the middle one that of study.prm.
   const TemporaryFolder folder;
   const std::string out = folder.path("depths"),
-                    deck = ANTIFORM_SOURCE_DIR "/cases/burial-depth/study.prm";
+                    deck = ANTIFORM_SOURCE_DIR "/cases/burial-depth/study-contrasts.prm";
   const Outcome outcome = run_program(study(deck, out, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  const std::vector<std::string> lines = lines_of(contents(out + "/study.csv"));
-  ASSERT_EQ(lines.size(), 19u);
+  ASSERT_EQ(lines_of(contents(out + "/study.csv")).size(), 55u);
   const nlohmann::json record = record_of(out);
-  double least = 1e300, most = 0.;
+  std::map<std::string, std::vector<double>> sliding; // stresses by contrast
   for (const nlohmann::json &member : record.at("members"))
   {
-    // Smooth and bonded cover on a half-space. 3 % is what the issue asks; with two
-    // rounds of refinement the mesh leaves 0.5 %.
+    // Smooth and bonded cover on a half-space. The mesh leaves 0.5 to 0.9 %; at a
+    // contrast of 1e3 the closed form, of a thin layer in a matrix without stress of its
+    // own, is 1 to 2.2 % too high (docs/theory/continuum.md 12).
     const double ratio = member.at("figures").at("critical_stress_over_theory_stress");
     EXPECT_NEAR(ratio, 1., 0.03) << member.at("name");
-    const double stress = member.at("figures").at("critical_stress_Pa");
     if (member.at("values").at("interface") == "sliding")
-    {
-      least = std::min(least, stress);
-      most = std::max(most, stress);
-    }
+      sliding[member.at("values").at("stiffness_contrast")].push_back(
+          member.at("figures").at("critical_stress_Pa"));
   }
-  // From a cover without weight to a deep one: 2^(2/3) (half the matrix helps no more).
-  EXPECT_NEAR(most / least, std::cbrt(4.), 0.03 * std::cbrt(4.));
+  ASSERT_EQ(sliding.size(), 3u);
+  for (const auto &[contrast, stresses] : sliding)
+  {
+    // From a cover that does nothing to one as good as the rock below: two half-spaces
+    // hold with 2^(2/3) of the stress of one; at 1e5 a cover of 100 h is 1.2 % short of
+    // it.
+    ASSERT_EQ(stresses.size(), 9u);
+    EXPECT_NEAR(stresses.back() / stresses.front(), std::cbrt(4.), 0.03 * std::cbrt(4.))
+        << contrast;
+  }
 }
 } // namespace studies_tests
