@@ -59,8 +59,7 @@ std::map<std::string, std::int64_t> BucklingGrains::sizes() const
   const coupling::GrainState &state = scene_->grains->state;
   sizes["grains"] = static_cast<std::int64_t>(state.grains.size());
   sizes["joints"] = static_cast<std::int64_t>(state.joints.size());
-  if (scene_->bridging)
-    sizes["multipliers"] = static_cast<std::int64_t>(scene_->bridging->n_multipliers());
+  sizes["multipliers"] = static_cast<std::int64_t>(scene_->n_multipliers());
   return sizes;
 }
 
@@ -69,6 +68,8 @@ coupling::StaticSystem BucklingGrains::supported(const std::vector<char> &open) 
   const coupling::GrainState &state = scene_->grains->state;
   coupling::StaticSystem system(state.grains, state.joints, scene_->solid.get(),
                                 scene_->bridging.get());
+  if (scene_->surface)
+    scene_->surface->add_to(system);
   const double push = 0.5 * unit_shortening * geometry_.length();
   std::size_t k = 0;
   for (const discrete::Wall &wall : scene_->walls)

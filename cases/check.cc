@@ -136,6 +136,9 @@ int check(const Parameters &p, const bool json, std::ostream &out)
     if (p.is_bridged())
       line(out, "  overlap   %.3g d wide (%.3g m), %.3g d of matrix grains before it",
            p.bridging.overlap, p.bridging.overlap * g.diameter(), p.bridging.buffer);
+    if (p.has_surface_interface())
+      line(out, "  join      the mesh ends at the layer's outer grains, cells of %.3g m",
+           p.matrix.cell_size * g.diameter());
   }
   if (p.has("beds"))
     out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";

@@ -113,7 +113,8 @@ bool Parameters::has_contacts_from_start() const
 {
   return has("layer") && layer.representation == "grains" &&
          (discrete::has_contact_beside(layer.law()) || has_smooth_joints() ||
-          (has("matrix") && matrix.interface == "frictionless"));
+          (has("matrix") && !has_surface_interface() &&
+           matrix.interface == "frictionless"));
 }
 
 const ConfinementParameters *Parameters::confinement() const
@@ -148,10 +149,20 @@ bool Parameters::is_nonlinear() const
           (has_matrix_mesh() && matrix_material.law != "elastic"));
 }
 
-bool Parameters::is_bridged() const
+bool Parameters::joins_grains_and_mesh() const
 {
   return has("layer") && has("matrix") && layer.representation == "grains" &&
          matrix.representation == "continuum";
+}
+
+bool Parameters::is_bridged() const
+{
+  return joins_grains_and_mesh() && matrix.join == "bridging domain";
+}
+
+bool Parameters::has_surface_interface() const
+{
+  return joins_grains_and_mesh() && matrix.join == "surface interface";
 }
 
 bool Parameters::is_bare_mesh() const

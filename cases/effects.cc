@@ -39,11 +39,14 @@ std::vector<Effect> list_effects(const Parameters &p)
   for (int bed = 0; bed < p.n_beds(); ++bed)
     layer_breaks |= p.bed(bed).joint.breakable;
   const bool events = p.follows_events();
-  const bool breakable = grains && (layer_breaks || (matrix && p.matrix.breakable));
-  const bool slips = grains && matrix && p.matrix.interface == "frictionless";
+  const bool matrix_breaks = grains && matrix && !p.has_surface_interface() &&
+                             p.matrix.breakable;
+  const bool breakable = matrix_breaks || (grains && layer_breaks);
+  const bool slips = grains && matrix && !p.has_surface_interface() &&
+                     p.matrix.interface == "frictionless";
   const bool beside = grains && discrete::has_contact_beside(p.layer.law());
   const bool flat = (grains && p.layer.bond_model == "flat joint" && layer_breaks) ||
-                    (grains && matrix && p.matrix.breakable);
+                    matrix_breaks;
 
   const std::string unbonded = "joints of the layer begin without bonds";
   const auto at_breakage = [&](const std::string &name, const std::string &what)
@@ -94,6 +97,13 @@ std::vector<Effect> list_effects(const Parameters &p)
   list.push_back(choose("bridging domain", p.is_bridged() && p.bridging.constraint,
                         "grains and mesh overlap",
                         p.is_bridged() ? "'Bridging domain / Constraint' is false"
+                        : p.has_surface_interface()
+                            ? "grains and mesh meet without an overlap"
+                            : "grains and mesh do not meet"));
+  list.push_back(choose("surface interface", p.has_surface_interface(),
+                        "the mesh ends at the layer's outer grains: " +
+                            p.matrix.interface,
+                        p.is_bridged() ? "grains and mesh overlap"
                                        : "grains and mesh do not meet"));
   list.push_back(choose("foundation", p.has("foundation"), "listed in Components",
                         "not listed in Components"));

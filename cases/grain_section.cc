@@ -296,7 +296,7 @@ GrainSection make_grains(const Parameters &p,
   const double layer_gap = packed.installation_gap;
   section.installation_gap = layer_gap;
   double matrix_gap = 0.;
-  if (geometry.has_matrix())
+  if (geometry.has_matrix() && !p.has_surface_interface())
   {
     progress("packing the matrix");
     section.matrix = make_matrix_rock(p, progress);

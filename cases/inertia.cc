@@ -79,9 +79,49 @@ StiffnessSums grain_stiffness(const Scene &scene)
 
 namespace
 {
-/// Bound for the grains at their present masses, with walls and base as springs to the
-/// ground; without damping.
-double grain_step(const Scene &scene)
+/// Stiffness of all that acts on grains and mesh, and of the contacts of a surface
+/// interface alone.
+struct SharedStiffness
+{
+  StiffnessSums grains;           ///< all
+  std::vector<double> mesh;       ///< all, absolute row sums [N/m]
+  StiffnessSums grain_contacts;   ///< those of the surface interface
+  std::vector<double> mesh_contacts; ///< likewise; empty without a mesh
+};
+
+SharedStiffness shared_stiffness(const Scene &scene,
+                                 const std::vector<double> &foundation_rows)
+{
+  SharedStiffness all;
+  const std::size_t n = scene.grains ? scene.grains->state.grains.size() : 0;
+  all.grain_contacts.translation.assign(n, 0.);
+  all.grain_contacts.rotation.assign(n, 0.);
+  if (scene.mesh)
+  {
+    const continuum::Vector cells = scene.solid->absolute_row_sums();
+    all.mesh.assign(cells.begin(), cells.begin() + cells.locally_owned_size());
+    all.mesh_contacts.assign(all.mesh.size(), 0.);
+    for (std::size_t i = 0; i < foundation_rows.size(); ++i)
+      all.mesh[i] += foundation_rows[i];
+  }
+  if (scene.surface)
+    scene.surface->add_stiffness(all.grain_contacts, all.mesh_contacts);
+  for (std::size_t i = 0; i < all.mesh.size(); ++i)
+    all.mesh[i] += all.mesh_contacts[i];
+  if (!scene.grains)
+    return all;
+  all.grains = grain_stiffness(scene);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    all.grains.translation[i] += all.grain_contacts.translation[i];
+    all.grains.rotation[i] += all.grain_contacts.rotation[i];
+  }
+  return all;
+}
+
+/// Bound for the grains @p grains, with walls and base as springs to the ground; without
+/// damping.
+double grain_step(const Scene &scene, const discrete::Grains &grains)
 {
   const coupling::GrainState &state = scene.grains->state;
   std::vector<double> ground = base_springs(scene);
@@ -89,8 +129,47 @@ double grain_step(const Scene &scene)
     for (const discrete::Wall &wall : *walls)
       for (const discrete::WallContact &contact : wall.contacts)
         ground[contact.grain] += contact.stiffness * contact.weight;
-  return discrete::stable_step(state.grains, state.joints, scene.contacts, ground,
+  return discrete::stable_step(grains, state.joints, scene.contacts, ground,
                                fracture_springs(scene));
+}
+
+/// The same where grains leave a part of their inertia to the contacts of a surface
+/// interface, in proportion to stiffness (Irons' theorem).
+double grain_step(const Scene &scene, const SharedStiffness &stiffness)
+{
+  if (!scene.surface || scene.surface->contacts.empty())
+    return grain_step(scene, scene.grains->state.grains);
+  discrete::Grains rest = scene.grains->state.grains;
+  const auto leave = [](std::vector<double> &inverse, const std::vector<double> &all,
+                        const std::vector<double> &contacts)
+  {
+    for (std::size_t i = 0; i < inverse.size(); ++i)
+      if (all[i] > contacts[i])
+        inverse[i] *= all[i] / (all[i] - contacts[i]);
+  };
+  leave(rest.inverse_mass, stiffness.grains.translation,
+        stiffness.grain_contacts.translation);
+  leave(rest.inverse_inertia, stiffness.grains.rotation,
+        stiffness.grain_contacts.rotation);
+  return grain_step(scene, rest);
+}
+
+/// Bound for the mesh, and for the contacts of a surface interface on their share of the
+/// inertia.
+double mesh_step(const Scene &scene, const SharedStiffness &stiffness)
+{
+  double largest = 0.;
+  for (std::size_t i = 0; i < stiffness.mesh.size(); ++i)
+    largest =
+        std::max(largest, stiffness.mesh[i] * scene.mesh->inverse_mass.begin()[i]);
+  if (scene.surface)
+    for (const auto &contact : scene.surface->contacts)
+      for (std::size_t point = 0; point < contact->states().size(); ++point)
+        largest = std::max(largest, contact->square_of_frequency(
+                                        point, scene.grains->state.grains,
+                                        stiffness.grains, scene.mesh->inverse_mass,
+                                        stiffness.mesh));
+  return 2. / std::sqrt(dealii::Utilities::MPI::max(largest, scene.communicator()));
 }
 } // namespace
 
@@ -108,15 +187,14 @@ double after_search(Scene &scene)
                 scene.bridging->weight().grains(all.reference(contact.grain));
     }
   double lost = 0.;
+  const SharedStiffness stiffness = shared_stiffness(scene, {});
   if (scene.parameters.run.driver == "quasi-static")
   {
-    lost = discrete::rescale_density(all, grain_stiffness(scene), scene.mass_weight,
-                                     scene.dt0);
-    if (scene.bridging && !scene.bridging->is_factorised_for(all))
-      scene.bridging->factorise(all, scene.mesh->inverse_mass);
+    lost = discrete::rescale_density(all, stiffness.grains, scene.mass_weight, scene.dt0);
+    scene.factorise_constraints();
   }
   const coupling::Clock &clock = scene.simulation->clock();
-  const double limit = damping_factor(scene.parameters) * grain_step(scene);
+  const double limit = damping_factor(scene.parameters) * grain_step(scene, stiffness);
   if (clock.dt > limit)
     throw NumericalError("contacts",
                          "grains that have come into contact have made the step "
@@ -129,16 +207,17 @@ namespace
 {
 /// Half of the stable step of a free grain, for which the others are made heavier: that of
 /// the softest region at its real masses. Of the layer, the stiffest region, the mean
-/// counts: its least grain would make all others step for it alone.
-double softest_step(const Scene &scene, const StiffnessSums &sums)
+/// counts: its least grain would make all others step for it alone. Of a mesh without
+/// matrix grains beside it the least node counts, as these would.
+double softest_step(const Scene &scene, const SharedStiffness &stiffness)
 {
   const discrete::Grains &grains = scene.grains->state.grains;
   double sum = 0., n = 0., matrix = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
-    if (!(sums.translation[i] > 0.))
+    if (!(stiffness.grains.translation[i] > 0.))
       continue; // nothing holds it
-    const double step = std::sqrt(grains.mass[i] / sums.translation[i]);
+    const double step = std::sqrt(grains.mass[i] / stiffness.grains.translation[i]);
     if (is_layer(grains.region[i]))
     {
       sum += step;
@@ -146,6 +225,12 @@ double softest_step(const Scene &scene, const StiffnessSums &sums)
     }
     else
       matrix = std::min(matrix, step);
+  }
+  if (scene.surface)
+  {
+    const continuum::Vector mass = scene.solid->lumped_mass();
+    for (std::size_t i = 0; i < stiffness.mesh.size(); ++i)
+      matrix = std::min(matrix, std::sqrt(2. * mass.begin()[i] / stiffness.mesh[i]));
   }
   const double layer = n > 0. ? sum / n : 0.;
   return std::isinf(matrix) ? layer : std::max(layer, matrix);
@@ -156,30 +241,25 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
 {
   const Parameters &p = scene.parameters;
   const bool scaled = p.run.driver == "quasi-static";
+  const SharedStiffness stiffness = shared_stiffness(scene, foundation_rows);
   double step = std::numeric_limits<double>::infinity();
   if (scene.grains)
   {
     discrete::Grains &grains = scene.grains->state.grains;
-    const StiffnessSums sums = grain_stiffness(scene);
-    scene.dt0 = scaled ? softest_step(scene, sums) : 0.;
-    discrete::scale_density(grains, sums, scene.mass_weight, scene.dt0);
-    step = grain_step(scene);
+    scene.dt0 = scaled ? softest_step(scene, stiffness) : 0.;
+    discrete::scale_density(grains, stiffness.grains, scene.mass_weight, scene.dt0);
+    step = grain_step(scene, stiffness);
   }
   if (scene.mesh)
   {
     const continuum::Vector &real =
         scene.bridging ? scene.bridging->mesh_mass() : scene.solid->lumped_mass();
+    std::vector<double> more = stiffness.mesh_contacts;
+    for (std::size_t i = 0; i < foundation_rows.size(); ++i)
+      more[i] += foundation_rows[i];
     // The mesh is made as slow as the grains are, no slower.
-    scene.mesh->scale_density(real, foundation_rows, scaled && scene.grains ? step : 0.);
-    double largest = 0.;
-    const continuum::Vector sums = scene.solid->absolute_row_sums();
-    for (std::size_t i = 0; i < scene.mesh->mass.locally_owned_size(); ++i)
-      largest = std::max(largest, (sums.begin()[i] +
-                                   (foundation_rows.empty() ? 0. : foundation_rows[i])) *
-                                      scene.mesh->inverse_mass.begin()[i]);
-    largest = dealii::Utilities::MPI::max(largest,
-                                          scene.solid->dof_handler().get_communicator());
-    step = std::min(step, 2. / std::sqrt(largest));
+    scene.mesh->scale_density(real, more, scaled && scene.grains ? step : 0.);
+    step = std::min(step, mesh_step(scene, stiffness));
   }
   return p.run.safety * damping_factor(p) * step;
 }

@@ -24,7 +24,7 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
   const double largest = p.matrix.largest_cell * d;
   const bool layer_is_mesh = p.layer.representation == "continuum";
   const bool joined = !p.has_mesh_contact(); // else faces lie on one another
-  const double uniform = layer_is_mesh ? 0. : p.bridging.overlap * d;
+  const double uniform = p.is_bridged() ? p.bridging.overlap * d : 0.;
   const auto core_top = [&geometry](const double x) { return geometry.core_top(x); };
   const auto core_bottom = [&geometry](const double x)
   { return geometry.core_bottom(x); };

@@ -246,12 +246,13 @@ void check_matrix(const Parameters &p, Findings &findings)
          "a layer of finite elements in a matrix of grains does not exist. "
          "Set 'Layer/Representation' = 'grains', or this to 'continuum'."});
 
-  if (p.layer.representation == "grains" &&
+  if (p.layer.representation == "grains" && !p.has_surface_interface() &&
       (m.interface == "sliding" || m.interface == "frictional"))
-    findings.push_back({{"Matrix/Interface", "Layer/Representation"},
-                        "a layer of grains is cemented to its matrix, or in frictionless "
-                        "contact. Give one of these, or 'Layer/Representation' = "
-                        "'continuum'."});
+    findings.push_back(
+        {{"Matrix/Interface", "Layer/Representation"},
+         "a layer of grains is cemented to matrix grains, or in frictionless "
+         "contact with them. Give one of these, or 'Matrix/Join' = 'surface interface' "
+         "with a matrix of finite elements, or 'Layer/Representation' = 'continuum'."});
   if (m.cell_aspect > 1. && (p.layer.representation == "grains"))
     findings.push_back({{"Matrix/Cell aspect ratio", "Layer/Representation"},
                         "beside grains cells are as wide as high. Give 1."});
@@ -263,8 +264,8 @@ void check_matrix(const Parameters &p, Findings &findings)
          "out of reach of the matrix grains: packings of disks stay below nu_2D = 1/3, "
          "which is 0.25 in plane strain, and ours reach 0.01 to 0.235. Give such a "
          "ratio, "
-         "or 'Layer/Representation' = 'continuum'; a surface interface, which needs no "
-         "matrix grains, does not exist yet."});
+         "or 'Matrix/Join' = 'surface interface', which needs no matrix grains, or "
+         "'Layer/Representation' = 'continuum'."});
   if (has_grains && m.breakable && m.tensile_strength == 0. && m.cohesion == 0.)
     findings.push_back(
         {{"Matrix/Breakable", "Matrix/Tensile strength", "Matrix/Cohesion"},
@@ -306,7 +307,8 @@ void check_overlap_fits(const Parameters &p,
   else
     text += "No overlap fits beside this buffer. Give";
   text += " more grains across the layer, a smaller buffer width ratio, a larger '" +
-          entry + "', or 'Matrix/Representation' = 'grains'.";
+          entry + "', 'Matrix/Join' = 'surface interface', or 'Matrix/Representation' = "
+          "'grains'.";
   findings.push_back(
       {{"Bridging domain/Overlap width ratio", "Bridging domain/Buffer width ratio",
         "Matrix/Cell size ratio", "Layer/Grains across", "Layer/Thickness", entry},
@@ -330,6 +332,32 @@ void check_bridging(const Parameters &p, Findings &findings)
                      findings);
   check_overlap_fits(p, "base", "Matrix/Base depth ratio", p.matrix.base_depth_ratio,
                      findings);
+}
+
+/// What a layer of grains on the edges of a mesh leaves out.
+void check_surface_interface(const Parameters &p, Findings &findings)
+{
+  const std::string otherwise = "'Matrix/Join' = 'bridging domain'";
+  if (p.matrix.mesh_modulus_ratio != 1.)
+    findings.push_back({{"Matrix/Mesh modulus ratio", "Matrix/Join"},
+                        "there are no matrix grains that the mesh could differ from. Give "
+                        "1, or " +
+                            otherwise + "."});
+  if (p.run.strain == "finite")
+    findings.push_back({{"Run/Strain", "Matrix/Join"},
+                        "a surface interface joins a mesh of small strain. Give small, or " +
+                            otherwise + "."});
+  // The corners of the layer are looked for between its ends and the mesh.
+  const double slope =
+      M_PI * p.layer.amplitude_ratio * p.layer.thickness / p.layer_length();
+  if (p.layer.shape == "cosine" && slope > 0.95)
+    findings.push_back(
+        {{"Layer/Amplitude ratio", "Matrix/Join"},
+         "the limbs would dip by " + short_text(180. / M_PI * std::atan(slope)) +
+             " degrees, and from 44 on the layer's upper grains cannot be told from those "
+             "of its ends. Give at most " +
+             short_text(std::floor(95. * p.layer.amplitude_ratio / slope) / 100.) +
+             ", or " + otherwise + "."});
 }
 
 void check_run(const Parameters &p, Findings &findings)
@@ -418,6 +446,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_matrix(p, findings);
   if (p.is_bridged())
     check_bridging(p, findings);
+  if (p.has_surface_interface())
+    check_surface_interface(p, findings);
   check_run(p, findings);
   check_event_driver(p, findings);
   check_materials(p, findings);

@@ -18,7 +18,7 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
   }
   entries.choice(
       "Representation", matrix.representation,
-      "Finite elements (joined to a layer of grains by the bridging domain), or "
+      "Finite elements (joined to a layer of grains as 'Join' says), or "
       "grains everywhere. Joints of matrix grains have the elements, radius multiplier "
       "and element moment of 'Layer/Flat joint' in the deck, beds or not; their moduli "
       "follow from the stiffness contrast and Poisson ratio.",
@@ -47,14 +47,21 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
                  "Contact of layer and matrix: cemented, sliding (no shear, does not "
                  "open), frictional (Coulomb with cohesion, may open), frictionless (no "
                  "shear, may open). Of finite elements: the buckling driver knows the "
-                 "first two, the static driver all; of grains: cemented or frictionless.",
+                 "first two, the static driver all; of a layer of grains: cemented or "
+                 "frictionless where matrix grains lie on it, all four by the surface "
+                 "interface.",
                  "cemented|sliding|frictional|frictionless");
   entries.number("Interface friction", matrix.friction,
                  "mu of a frictional interface [-].", Number::at_least(0.));
   entries.number("Interface cohesion", matrix.interface_cohesion,
                  "c of a frictional interface [Pa].",
                  Number::at_least(0.));
-  entries.choice("Join", matrix.join, "How grains and mesh meet.", "bridging domain");
+  entries.choice(
+      "Join", matrix.join,
+      "How a layer of grains and the mesh of the matrix meet: in an overlap, with matrix "
+      "grains beside the layer; or the mesh ends where the layer's outer grains begin, "
+      "and 'Interface' says by which law they hold on to it, without matrix grains.",
+      "bridging domain|surface interface");
   entries.number(
       "Mesh modulus ratio", matrix.mesh_modulus_ratio,
       "Moduli of the mesh over those of the matrix grains; other than 1 only to "
@@ -347,7 +354,8 @@ const std::vector<Section> &all_sections()
                  "ratio, Cell aspect ratio, Element degree and refinement"},
       {"Layer material", "the layer is continuum"},
       {"Matrix material", "component matrix, which is continuum"},
-      {"Bridging domain", "the layer is grains and the matrix is continuum"},
+      {"Bridging domain", "the layer is grains and the matrix is continuum, 'Matrix/Join' "
+                          "= 'bridging domain'"},
       {"Foundation", "component foundation"},
       {"Absorbing boundary", "component absorbing boundary"},
       {"Surface pressure", "component surface pressure"},

@@ -17,8 +17,7 @@ namespace
 /// Words of the design that this version does not have; refused by naming what exists.
 const std::map<std::string, std::vector<std::string>> planned = {
     {"Layer/Representation", {"manifold", "adaptive"}},
-    {"Matrix/Representation", {"manifold", "adaptive"}},
-    {"Matrix/Join", {"surface interface"}}};
+    {"Matrix/Representation", {"manifold", "adaptive"}}};
 
 std::vector<std::string> names_of(const std::vector<Section> &sections)
 {
@@ -160,7 +159,7 @@ private:
                           ". Take fewer values, or raise that number.");
   }
 
-  /// Components and the two representations decide which sections are read.
+  /// Components, the two representations and their join decide which sections are read.
   void find_components(Parameters &p)
   {
     const auto line = last_.find("Components");
@@ -180,7 +179,8 @@ private:
     }
     for (auto [path, target] :
          {std::pair{"Layer/Representation", &p.layer.representation},
-          std::pair{"Matrix/Representation", &p.matrix.representation}})
+          std::pair{"Matrix/Representation", &p.matrix.representation},
+          std::pair{"Matrix/Join", &p.matrix.join}})
       if (const auto set = last_.find(path); set != last_.end())
         if (known_.find(path)->pattern->match(set->second.value))
           *target = set->second.value;

@@ -91,7 +91,7 @@ struct MatrixParameters
   std::string interface = "cemented"; ///< cemented | sliding | frictional | frictionless
   double friction = 0.6;              ///< mu of a frictional interface [-]
   double interface_cohesion = 0.;     ///< c of a frictional interface [Pa]
-  std::string join = "bridging domain";     ///< of grains and mesh: bridging domain
+  std::string join = "bridging domain"; ///< of grains and mesh, or surface interface
   double mesh_modulus_ratio = 1.; ///< mesh moduli over those of the matrix grains
   // mesh
   double cell_size = 2.;    ///< h_FE over mean grain diameter, near the overlap
@@ -349,8 +349,18 @@ struct Parameters
   /// The static driver has more to solve than a linear elastic body: a law, large strain,
   /// contact.
   bool is_nonlinear() const;
-  /// Layer of grains in a matrix of finite elements: the bridging domain joins them.
+  /// Layer of grains in a matrix of finite elements.
+  bool joins_grains_and_mesh() const;
+  /// The same, joined in an overlap.
   bool is_bridged() const;
+  /// The same, joined where the mesh's edges and the layer's outer grains meet.
+  bool has_surface_interface() const;
+  /// That keeps layer and matrix together, by multipliers.
+  bool has_surface_tie() const
+  {
+    return has_surface_interface() &&
+           (matrix.interface == "cemented" || matrix.interface == "sliding");
+  }
   /// Layer of finite elements without a matrix.
   bool is_bare_mesh() const;
 

@@ -194,14 +194,31 @@ std::vector<double> external_forces(const Scene &scene)
   return force;
 }
 
+/// Contacts of a surface interface press from the start: on the grains, and on the nodes
+/// of the edge. @p mesh_force holds the free ones; walls feel what presses on theirs.
+void press_edges(Scene &scene, continuum::Vector &mesh_force)
+{
+  if (!scene.surface)
+    return;
+  continuum::Vector pressed = scene.solid->make_vector();
+  for (const auto &contact : scene.surface->contacts)
+    contact->add_forces(scene.grains->state.grains, scene.mesh->displacement,
+                        scene.mesh->velocity, 0., pressed);
+  for (const auto dof : scene.solid->locally_owned())
+    if (scene.mesh->inverse_mass(dof) > 0.)
+      mesh_force(dof) -= pressed(dof);
+}
+
 /// What the forces of joints, walls, contacts and loads leave over on each grain,
-/// opposite.
+/// opposite. \param mesh_force likewise what holds the mesh
 std::vector<coupling::GrainLoad> holding_forces(Scene &scene,
-                                                const std::vector<double> &loads)
+                                                const std::vector<double> &loads,
+                                                continuum::Vector &mesh_force)
 {
   Grains &grains = scene.grains->state.grains;
   Joints &joints = scene.grains->state.joints;
   compute_joint_forces(grains, joints, {}, nullptr);
+  press_edges(scene, mesh_force);
   for (Wall &wall : scene.walls)
     add_wall_forces(grains, wall);
   if (!scene.contacts.installed.empty())
@@ -290,7 +307,8 @@ InstalledPrestress install_prestress(Scene &scene, const continuum::Vector &load
     guess_joints(scene, prestress, factor);
     guess_contacts(scene, prestress, factor);
     press_walls(scene, prestress);
-    installed.grain_loads = holding_forces(scene, external_forces(scene));
+    installed.grain_loads =
+        holding_forces(scene, external_forces(scene), installed.mesh_force);
     take_from_unbreakable(scene, installed.grain_loads);
   }
   return installed;

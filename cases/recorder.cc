@@ -171,10 +171,7 @@ void Recorder::close_ledger(const Energies &energies)
 
 void Recorder::append_history(const Clock &clock, const Sample &sample)
 {
-  const double gap = scene_.bridging
-                         ? scene_.bridging->displacement_gap(scene_.grains->state.grains,
-                                                             scene_.mesh->displacement)
-                         : 0.;
+  const double gap = scene_.displacement_gap();
   if (!history_)
     return;
   std::vector<double> values{static_cast<double>(clock.step),

@@ -54,8 +54,10 @@ void build_mesh(Scene &scene, const MPI_Comm communicator)
 {
   const Parameters &p = scene.parameters;
   scene.triangulation = make_mesh(p, scene.geometry, communicator);
+  if (p.has_surface_interface())
+    label_edges(*scene.triangulation, scene.geometry);
   std::vector<continuum::ElasticMaterial> materials = mesh_materials(p);
-  if (scene.grains)
+  if (p.is_bridged())
     materials[matrix_material_id] = matrix_material(p, *scene.grains);
   std::function<double(const dealii::Point<2> &)> weight;
   if (p.is_bridged())
@@ -124,6 +126,30 @@ void refuse_fractures_in_overlap(const GrainSection &section, const OverlapWeigh
 }
 } // namespace
 
+std::size_t Scene::n_multipliers() const
+{
+  if (surface)
+    return surface->n_multipliers();
+  return bridging ? bridging->n_multipliers() : 0;
+}
+
+double Scene::displacement_gap() const
+{
+  if (surface && surface->tie)
+    return surface->tie->displacement_gap(grains->state.grains, mesh->displacement);
+  return bridging
+             ? bridging->displacement_gap(grains->state.grains, mesh->displacement)
+             : 0.;
+}
+
+void Scene::factorise_constraints()
+{
+  if (bridging && !bridging->is_factorised_for(grains->state.grains))
+    bridging->factorise(grains->state.grains, mesh->inverse_mass);
+  if (surface && surface->tie && !surface->tie->is_factorised_for(grains->state.grains))
+    surface->tie->factorise(grains->state.grains, mesh->inverse_mass);
+}
+
 MPI_Comm Scene::communicator() const
 {
   return mesh ? mesh->communicator() : MPI_COMM_SELF;
@@ -156,9 +182,8 @@ void Scene::visit_state(coupling::StateArchive &archive)
   if (broken != 0)
     add_breakage_components();
   simulation->visit_state(archive);
-  if (archive.is_loading() && bridging &&
-      !bridging->is_factorised_for(grains->state.grains))
-    bridging->factorise(grains->state.grains, mesh->inverse_mass);
+  if (archive.is_loading())
+    factorise_constraints();
 }
 
 std::unique_ptr<Scene>
@@ -195,7 +220,7 @@ build_bodies(const Parameters &p, const MPI_Comm communicator, const Progress &p
     scene->walls = make_walls(none, scene->geometry);
   }
 
-  if (!grains || bridged)
+  if (!grains || p.joins_grains_and_mesh())
   {
     progress("building the mesh");
     build_mesh(*scene, communicator);
@@ -216,6 +241,11 @@ build_bodies(const Parameters &p, const MPI_Comm communicator, const Progress &p
         state.grains, state.joints, *scene->solid, weight,
         0.1 * scene->grains->matrix->bulk_density * cell * cell);
     scene->mass_weight = scene->bridging->grain_mass_weight();
+  }
+  if (p.has_surface_interface())
+  {
+    progress("joining grains and mesh");
+    scene->surface = make_surface_join(*scene);
   }
   return scene;
 }
@@ -241,8 +271,7 @@ build(const Parameters &p, const MPI_Comm communicator, const Progress &progress
     foundation_rows = foundation->absolute_row_sums();
   }
   const double dt = choose_step(*scene, foundation_rows);
-  if (bridged)
-    scene->bridging->factorise(scene->grains->state.grains, scene->mesh->inverse_mass);
+  scene->factorise_constraints();
   scene->simulation = std::make_unique<Simulation>(dt);
   if (scene->grains)
     add_grain_components(*scene);

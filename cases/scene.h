@@ -4,6 +4,7 @@
 #include "cases/geometry.h"
 #include "cases/grain_section.h"
 #include "cases/parameters.h"
+#include "cases/surface_join.h"
 #include "continuum/elastic_solid.h"
 #include "coupling/bridging_domain.h"
 #include "coupling/event_loading.h"
@@ -43,7 +44,9 @@ struct Scene
   std::unique_ptr<dealii::parallel::distributed::Triangulation<2>> triangulation;
   std::unique_ptr<continuum::ElasticSolid> solid;
   std::optional<coupling::MeshState> mesh;
+  // What joins grains and mesh, one of them or none.
   std::unique_ptr<coupling::BridgingDomain> bridging;
+  std::unique_ptr<SurfaceJoin> surface;
 
   std::vector<double> mass_weight; ///< mu of each grain; empty: 1
 
@@ -75,6 +78,11 @@ struct Scene
   double tension() const;
   /// Mean unbalanced force over the mean force of a joint, of the last record [-].
   double unbalanced_ratio() const;
+  std::size_t n_multipliers() const;
+  /// Largest displacement gap of what keeps grains and mesh together [m].
+  double displacement_gap() const;
+  /// The constraints of grains and mesh for their present inertial masses.
+  void factorise_constraints();
   MPI_Comm communicator() const;
   /// Friction, contacts and search, which the first broken bond calls for.
   void add_breakage_components();

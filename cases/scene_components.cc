@@ -11,6 +11,7 @@
 #include "continuum/section_mesh.h"
 #include "coupling/absorbing_component.h"
 #include "coupling/mesh_step_check.h"
+#include "coupling/surface_component.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,10 +34,12 @@ enum Rank
   rank_search = 25,
   rank_smooth_joints = 28,
   rank_contacts = 30,
+  rank_surface_contacts = 35,
   rank_walls = 40,
   rank_membrane = 45, // before the grains move on
   rank_loads = 60,
   rank_base = 90,
+  rank_surface_tie = 94, // forces are constrained before anything looks at them
   rank_constrained = 95,
   rank_damping = 96,
   rank_load_steps = 98,
@@ -290,6 +293,26 @@ void add_walls(Scene &scene)
                                              (confinement->ramp * scene.transit_time)));
   }
 }
+
+/// The layer on the edges of the mesh.
+void add_surface_interface(Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  GrainState &grains = scene.grains->state;
+  const std::string name = "surface interface", reason = reason_for(p, name);
+  if (scene.surface->tie)
+    scene.simulation->add(std::make_unique<TiedSurface>(*scene.surface->tie, grains,
+                                                        *scene.mesh, !p.has("damping")),
+                          {Stage::damp, Stage::constrain}, rank_surface_tie, name,
+                          reason);
+  std::size_t number = 0;
+  for (const auto &contact : scene.surface->contacts)
+    scene.simulation->add(
+        std::make_unique<SurfaceContactForces>(*contact, grains, *scene.mesh,
+                                               number++ == 0 ? "surface/below"
+                                                             : "surface/above"),
+        {Stage::forces}, rank_surface_contacts, name, reason);
+}
 } // namespace
 
 void add_common_components(Scene &scene)
@@ -351,6 +374,8 @@ void add_common_components(Scene &scene)
     simulation.add(std::make_unique<Bridging>(*domain, *grains, *mesh),
                    {Stage::constrain}, 0, "bridging domain",
                    reason_for(p, "bridging domain"));
+  if (scene.surface)
+    add_surface_interface(scene);
 }
 
 void add_foundation(Scene &scene, std::unique_ptr<MeshFoundation> foundation)

@@ -33,6 +33,8 @@ double height_of_grains(const Parameters &p, const SectionGeometry &g)
     return g.thickness();
   if (p.matrix.representation == "grains")
     return g.surface() - g.base();
+  if (p.has_surface_interface())
+    return g.thickness();
   const double beside = (p.bridging.overlap + p.bridging.buffer) * g.diameter();
   return g.thickness() + std::min(p.matrix.burial_depth_ratio * g.thickness(), beside) +
          std::min(p.matrix.base_depth_ratio * g.thickness(), beside);
@@ -182,11 +184,11 @@ Sizes predict_sizes(const Parameters &p, const SectionGeometry &g)
     sizes.layer_grains = g.thickness() * per_height;
     sizes.grains = height_of_grains(p, g) * per_height;
     sizes.joints = joints_per_grain * sizes.grains;
-    if (p.has("matrix"))
+    if (p.has("matrix") && !p.has_surface_interface())
       sizes.tile_grains =
           grains_per_square_diameter * p.matrix.tile_size * p.matrix.tile_size;
   }
-  if (p.layer.representation == "continuum" || p.is_bridged())
+  if (p.layer.representation == "continuum" || p.joins_grains_and_mesh())
   {
     sizes.cells = g.n_columns() * rows_of_cells(p, g);
     if (p.run.driver == "buckling")

@@ -22,7 +22,7 @@ void check_material(const Parameters &p,
                                                            : entry);
     findings.push_back({paths, text});
   };
-  if (m.law != "elastic" && (p.run.driver != "static" || p.is_bridged()))
+  if (m.law != "elastic" && (p.run.driver != "static" || p.joins_grains_and_mesh()))
     find({"Law", "Run/Driver"},
          "the " + p.run.driver +
              " driver knows elastic finite elements only. Give "
@@ -102,10 +102,10 @@ void check_buckling_of_grains(const Parameters &p, Findings &findings)
     find({"Beds/Interface", "Run/Driver"},
          "knows no smooth joints, and beds that rub are joined by these. Give cemented, "
          "or 'Run/Driver' = 'quasi-static'.");
-  if (p.has("matrix") && p.matrix.interface == "frictionless")
+  if (p.has("matrix") && p.matrix.interface.find("friction") == 0)
     find({"Matrix/Interface", "Run/Driver"},
-         "is linear, and grains in frictionless contact may part. Give cemented, or "
-         "'Run/Driver' = 'quasi-static'.");
+         "is linear, and grains in " + p.matrix.interface +
+             " contact may part. Give cemented, or 'Run/Driver' = 'quasi-static'.");
   if (p.has_unbonded_joints())
     find({"Layer/Joint types/Slit fraction", "Layer/Joint types/Gapped fraction",
           "Run/Driver"},
@@ -239,7 +239,7 @@ void check_absorbing_boundary(const Parameters &p, Findings &findings)
 /// matter to decide, not to happen.
 void check_thin_strips(const Parameters &p, Findings &findings)
 {
-  if (!p.has_layer_mesh() || !p.has_matrix_mesh())
+  if (!(p.has_layer_mesh() && p.has_matrix_mesh()) && !p.has_surface_interface())
     return;
   const double cell = p.matrix.cell_size * p.grain_diameter();
   const auto check = [&](const std::string &what, const double ratio,
@@ -268,10 +268,11 @@ void check_solid_scene(const Parameters &p, Findings &findings)
     check_foundation(p, findings);
   if (p.has("absorbing boundary"))
     check_absorbing_boundary(p, findings);
-  if (p.matrix.cover_rows > 0 && p.has("matrix") && !p.has_layer_mesh())
+  if (p.matrix.cover_rows > 0 && p.has("matrix") && !p.has_layer_mesh() &&
+      !p.has_surface_interface())
     findings.push_back({{"Matrix/Cover rows", "Layer/Representation"},
                         "rows of their own are for a cover on a layer of finite "
-                        "elements. Give 0."});
+                        "elements, or on a surface interface. Give 0."});
   if (p.matrix.refinement_rounds > 0 && p.run.driver != "buckling")
     findings.push_back({{"Matrix/Refinement rounds", "Run/Driver"},
                         "only the buckling driver refines its cells. Give 0."});

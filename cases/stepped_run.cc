@@ -180,8 +180,8 @@ void SteppedRun::describe()
   if (s.mesh)
     log_.line(std::to_string(s.triangulation->n_global_active_cells()) + " cells, " +
               std::to_string(s.solid->dof_handler().n_dofs()) + " degrees of freedom" +
-              (s.bridging
-                   ? ", " + std::to_string(s.bridging->n_multipliers()) + " multipliers"
+              (s.n_multipliers() > 0
+                   ? ", " + std::to_string(s.n_multipliers()) + " multipliers"
                    : ""));
   if (const std::string loading = loading_in_words(); !loading.empty())
     log_.line(loading);
@@ -342,8 +342,7 @@ void SteppedRun::describe_scene(Summary &summary) const
   sizes["cells"] =
       s.mesh ? static_cast<std::int64_t>(s.triangulation->n_global_active_cells()) : 0;
   sizes["dofs"] = s.mesh ? static_cast<std::int64_t>(s.solid->dof_handler().n_dofs()) : 0;
-  sizes["multipliers"] =
-      s.bridging ? static_cast<std::int64_t>(s.bridging->n_multipliers()) : 0;
+  sizes["multipliers"] = static_cast<std::int64_t>(s.n_multipliers());
   if (s.grains)
     report_packing(s.grains->layer_quality, summary.results);
   summary.steps = s.simulation->clock().step;

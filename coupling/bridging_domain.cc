@@ -166,6 +166,8 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
 
 bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
 {
+  if (!solver_)
+    return false;
   for (std::size_t k = 0; k < rows_.overlap_grains.size(); ++k)
     if (grain_inverse_mass_[k] != grains.inverse_mass[rows_.overlap_grains[k]])
       return false;

@@ -36,6 +36,7 @@ struct Vertex
 {
   double hat = 0.; ///< integral of its function over the edge [m]
   Vec2 place;
+  std::array<std::uint32_t, 2> dofs{};
   std::array<Row, 2> rows;
 };
 
@@ -108,10 +109,13 @@ std::vector<Sample> samples(const SurfaceInterface &interface,
 
 SurfaceTie::SurfaceTie(const discrete::Grains &grains,
                        std::vector<SurfaceInterface> interfaces,
-                       const Kind kind)
+                       const Kind kind,
+                       std::vector<std::uint32_t> shared)
     : kind_(kind)
+    , shared_(std::move(shared))
     , interfaces_(std::move(interfaces))
 {
+  std::sort(shared_.begin(), shared_.end());
   for (const SurfaceInterface &interface : interfaces_)
   {
     places_.emplace_back();
@@ -199,6 +203,7 @@ void SurfaceTie::build_rows(const SurfaceInterface &interface,
     for (const unsigned int end : {0u, 1u})
     {
       Vertex &vertex = vertices[edge.dofs(f)[end][0]];
+      vertex.dofs = edge.dofs(f)[end];
       vertex.hat += 0.5 * (edge.distance_along({f, 1.}) - edge.distance_along({f, 0.}));
       vertex.place = edge.point({f, static_cast<double>(end)}, nullptr);
     }
@@ -240,7 +245,9 @@ void SurfaceTie::build_rows(const SurfaceInterface &interface,
     for (unsigned int c = 0; c < n_directions; ++c)
     {
       const Row &row = vertex.rows[c];
-      if (row.length <= smallest_share * vertex.hat)
+      if (row.length <= smallest_share * vertex.hat ||
+          (kind_ == Kind::cemented &&
+           std::binary_search(shared_.begin(), shared_.end(), vertex.dofs[c])))
         continue;
       rows_.push_back(row.form());
       row_names_.push_back("vertex (" + std::to_string(vertex.place.x) + " m, " +

@@ -35,9 +35,13 @@ public:
   };
 
   /// \param interfaces which share no grain unless they are in one tie
+  /// \param shared mesh dofs moved by walls that hold the layer's end too: cemented
+  ///               vertices demand nothing in that direction, else grains would hang on
+  ///               the walls by their edge and not by their contact with them
   SurfaceTie(const discrete::Grains &grains,
              std::vector<SurfaceInterface> interfaces,
-             Kind kind);
+             Kind kind,
+             std::vector<std::uint32_t> shared = {});
 
   Kind kind() const { return kind_; }
   const std::vector<SurfaceInterface> &interfaces() const { return interfaces_; }
@@ -91,6 +95,7 @@ private:
   std::vector<double> multipliers(const Eigen::VectorXd &field) const;
 
   Kind kind_;
+  std::vector<std::uint32_t> shared_; ///< ascending
   std::vector<SurfaceInterface> interfaces_;
   std::vector<std::vector<EdgeCurve::Place>> places_; ///< of each interface's points, now
   std::vector<LinearForm> rows_;

@@ -110,6 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Variant{"Coupled", {}},
         Variant{"Frictionless", {"Matrix/Interface=frictionless"}},
+        Variant{"OnTheSurface", {"Matrix/Join=surface interface"}},
+        Variant{"RubbingOnTheSurface",
+                {"Matrix/Join=surface interface", "Matrix/Interface=frictional",
+                 "Components=layer, matrix, surface pressure, walls, damping",
+                 "Surface pressure/Pressure=1e6"}},
         Variant{"PureGrains",
                 {"Matrix/Representation=grains", "Matrix/Burial depth ratio=1",
                  "Matrix/Base depth ratio=1"}},

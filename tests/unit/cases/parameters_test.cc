@@ -155,11 +155,9 @@ TEST(Parameters, NamesWhatExistsForWhatDoesNotExistYet)
   const std::string yet = "does not exist yet";
   const auto problems = problems_of(
       deck, {"Layer/Representation=manifold", "Matrix/Representation=adaptive",
-             "Matrix/Join=surface interface",
              "Components=layer, matrix, walls, confinement"});
   EXPECT_TRUE(tells(problems, {"'Layer/Representation'", yet, "grains or continuum"}));
   EXPECT_TRUE(tells(problems, {"'Matrix/Representation'", yet, "continuum or grains"}));
-  EXPECT_TRUE(tells(problems, {"'Matrix/Join'", yet, "bridging domain"}));
   EXPECT_TRUE(tells(problems, {"'confinement'", "does not exist", "surface pressure"}));
 }
 
