@@ -185,6 +185,8 @@ void check_materials(const Parameters &parameters, std::vector<Finding> &finding
 void check_buckling(const Parameters &parameters, std::vector<Finding> &findings);
 void check_solid_scene(const Parameters &parameters, std::vector<Finding> &findings);
 void check_membrane_of_mesh(const Parameters &parameters, std::vector<Finding> &findings);
+/// The part of it that the join of grains and mesh adds.
+void check_join(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that the event driver adds.
 void check_event_driver(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that a calibration adds.

@@ -100,6 +100,15 @@ std::vector<Effect> list_effects(const Parameters &p)
                         : p.has_surface_interface()
                             ? "grains and mesh meet without an overlap"
                             : "grains and mesh do not meet"));
+  const bool joined = p.is_bridged() && p.bridging.constraint;
+  list.push_back(choose("overlap damping", joined && p.bridging.damping > 0.,
+                        "'Bridging domain / Overlap damping' is above 0",
+                        joined ? "'Bridging domain / Overlap damping' is 0"
+                               : "no bridging domain"));
+  list.push_back(choose("sub-cycling", joined && p.bridging.sub_cycles > 1,
+                        "'Bridging domain / Sub-cycles' is above 1",
+                        joined ? "'Bridging domain / Sub-cycles' is 1"
+                               : "no bridging domain"));
   list.push_back(choose("surface interface", p.has_surface_interface(),
                         "the mesh ends at the layer's outer grains: " +
                             p.matrix.interface,

@@ -1,7 +1,9 @@
 #include "cases/inertia.h"
 
+#include "cases/overlap.h"
 #include "cases/scene.h"
 #include "cases/scene_components.h"
+#include "cases/section_foundation.h"
 #include "continuum/errors.h"
 
 #include <algorithm>
@@ -79,14 +81,15 @@ StiffnessSums grain_stiffness(const Scene &scene)
 
 namespace
 {
-/// Stiffness of all that acts on grains and mesh, and of the contacts of a surface
-/// interface alone.
+/// Stiffness of all that acts on grains and mesh.
 struct SharedStiffness
 {
-  StiffnessSums grains;           ///< all
-  std::vector<double> mesh;       ///< all, absolute row sums [N/m]
-  StiffnessSums grain_contacts;   ///< those of the surface interface
-  std::vector<double> mesh_contacts; ///< likewise; empty without a mesh
+  StiffnessSums grains;
+  StiffnessSums grain_contacts;  ///< those of a surface interface in it
+  std::vector<double> mesh;      ///< absolute row sums [N/m]; empty without a mesh
+  /// What cells do not have of it: foundation, contacts of a surface interface, tied
+  /// grains [N/m].
+  std::vector<double> mesh_more;
 };
 
 SharedStiffness shared_stiffness(const Scene &scene,
@@ -100,14 +103,21 @@ SharedStiffness shared_stiffness(const Scene &scene,
   {
     const continuum::Vector cells = scene.solid->absolute_row_sums();
     all.mesh.assign(cells.begin(), cells.begin() + cells.locally_owned_size());
-    all.mesh_contacts.assign(all.mesh.size(), 0.);
-    for (std::size_t i = 0; i < foundation_rows.size(); ++i)
-      all.mesh[i] += foundation_rows[i];
+    all.mesh_more = foundation_rows;
+    all.mesh_more.resize(all.mesh.size(), 0.);
   }
   if (scene.surface)
-    scene.surface->add_stiffness(all.grain_contacts, all.mesh_contacts);
+    scene.surface->add_stiffness(all.grain_contacts, all.mesh_more);
+  if (scene.bridging && !scene.bridging->ties().empty())
+  {
+    const coupling::GrainState &state = scene.grains->state;
+    const std::vector<double> tied = scene.bridging->ties().absolute_row_sums(
+        state.grains, state.joints, all.mesh.size());
+    for (std::size_t i = 0; i < tied.size(); ++i)
+      all.mesh_more[i] += tied[i];
+  }
   for (std::size_t i = 0; i < all.mesh.size(); ++i)
-    all.mesh[i] += all.mesh_contacts[i];
+    all.mesh[i] += all.mesh_more[i];
   if (!scene.grains)
     return all;
   all.grains = grain_stiffness(scene);
@@ -205,8 +215,8 @@ double after_search(Scene &scene)
 
 namespace
 {
-/// Half of the stable step of a free grain, for which the others are made heavier: that of
-/// the softest region at its real masses. Of the layer, the stiffest region, the mean
+/// Half of the stable step of a free grain, for which the others are made heavier: that
+/// of the softest region at its real masses. Of the layer, the stiffest region, the mean
 /// counts: its least grain would make all others step for it alone. Of a mesh without
 /// matrix grains beside it the least node counts, as these would.
 double softest_step(const Scene &scene, const SharedStiffness &stiffness)
@@ -248,20 +258,30 @@ double choose_step(Scene &scene, const std::vector<double> &foundation_rows)
     discrete::Grains &grains = scene.grains->state.grains;
     scene.dt0 = scaled ? softest_step(scene, stiffness) : 0.;
     discrete::scale_density(grains, stiffness.grains, scene.mass_weight, scene.dt0);
+    if (scene.bridging)
+      scene.bridging->ties().hold(grains);
     step = grain_step(scene, stiffness);
   }
   if (scene.mesh)
   {
     const continuum::Vector &real =
         scene.bridging ? scene.bridging->mesh_mass() : scene.solid->lumped_mass();
-    std::vector<double> more = stiffness.mesh_contacts;
-    for (std::size_t i = 0; i < foundation_rows.size(); ++i)
-      more[i] += foundation_rows[i];
     // The mesh is made as slow as the grains are, no slower.
-    scene.mesh->scale_density(real, more, scaled && scene.grains ? step : 0.);
+    scene.mesh->scale_density(real, stiffness.mesh_more,
+                              scaled && scene.grains ? step : 0.);
     step = std::min(step, mesh_step(scene, stiffness));
   }
-  return p.run.safety * damping_factor(p) * step;
+  return p.run.safety * damping_factor(p) * overlap_damping_factor(scene, step) * step;
+}
+
+double mesh_stable_step(Scene &scene)
+{
+  std::vector<double> foundation_rows;
+  if (scene.parameters.has("foundation"))
+    foundation_rows = coupling::MeshFoundation(
+                          *scene.mesh, section_foundation(scene.parameters, *scene.solid))
+                          .absolute_row_sums();
+  return mesh_step(scene, shared_stiffness(scene, foundation_rows));
 }
 
 double layer_transit(const Scene &scene)

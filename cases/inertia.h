@@ -23,6 +23,9 @@ discrete::StiffnessSums grain_stiffness(const Scene &scene);
 /// \return the step that they allow, the deck's safety factor included [s]
 double choose_step(Scene &scene, const std::vector<double> &foundation_rows);
 
+/// Rigorous stable step of the mesh alone with the inertial masses that it has [s].
+double mesh_stable_step(Scene &scene);
+
 /// What follows a search for contacts: walls hold the grains that have come near them,
 /// and the inertial masses of a quasi-static run follow the contacts that grains carry
 /// now, so that none is too light for the step (discrete::rescale_density()); the

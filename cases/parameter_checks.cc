@@ -279,87 +279,6 @@ void check_matrix(const Parameters &p, Findings &findings)
                             short_text(m.cell_size) + ". Give at least that."});
 }
 
-/// From the layer outward: buffer, overlap, and at least one row of cells that is mesh
-/// only.
-void check_overlap_fits(const Parameters &p,
-                        const std::string &what,
-                        const std::string &entry,
-                        const double ratio,
-                        Findings &findings)
-{
-  const double d = p.grain_diameter();
-  const double room = ratio * p.layer.thickness;
-  const double overlap = p.bridging.overlap * d;
-  const double buffer = p.bridging.buffer * d;
-  const double cell = p.matrix.cell_size * d;
-  // The relative slack is for ratios that fit exactly but for rounding.
-  if (ratio == 0. || overlap + buffer + cell <= room * (1. + 1e-12))
-    return;
-  const double largest = std::floor((room - buffer - cell) / d * 1e3) / 1e3;
-  std::string text = "the overlap is wider than the " + what + ": buffer " +
-                     metres(buffer) + " + overlap " + metres(overlap) +
-                     " + one row of cells " + metres(cell) + " = " +
-                     metres(buffer + overlap + cell) + ", but the " + what + " is " +
-                     metres(room) + ". ";
-  if (largest >= p.matrix.cell_size)
-    text += "The largest overlap width ratio that fits is " + short_text(largest) + " (" +
-            metres(largest * d) + "); or give";
-  else
-    text += "No overlap fits beside this buffer. Give";
-  text += " more grains across the layer, a smaller buffer width ratio, a larger '" +
-          entry + "', 'Matrix/Join' = 'surface interface', or 'Matrix/Representation' = "
-          "'grains'.";
-  findings.push_back(
-      {{"Bridging domain/Overlap width ratio", "Bridging domain/Buffer width ratio",
-        "Matrix/Cell size ratio", "Layer/Grains across", "Layer/Thickness", entry},
-       text});
-}
-
-void check_bridging(const Parameters &p, Findings &findings)
-{
-  if (p.matrix.cell_size < 1.5)
-    findings.push_back(
-        {{"Matrix/Cell size ratio"},
-         "multiplier space too rich: cells below 1.5 grain diameters hold "
-         "more nodes than grains, and the constraint becomes singular. Give "
-         "2 to 4."});
-  if (p.bridging.overlap < p.matrix.cell_size)
-    findings.push_back({{"Bridging domain/Overlap width ratio", "Matrix/Cell size ratio"},
-                        "narrower than one cell ('Matrix/Cell size ratio' = " +
-                            short_text(p.matrix.cell_size) +
-                            "). Give at least 2 cells and 4 grain diameters."});
-  check_overlap_fits(p, "cover", "Matrix/Burial depth ratio", p.matrix.burial_depth_ratio,
-                     findings);
-  check_overlap_fits(p, "base", "Matrix/Base depth ratio", p.matrix.base_depth_ratio,
-                     findings);
-}
-
-/// What a layer of grains on the edges of a mesh leaves out.
-void check_surface_interface(const Parameters &p, Findings &findings)
-{
-  const std::string otherwise = "'Matrix/Join' = 'bridging domain'";
-  if (p.matrix.mesh_modulus_ratio != 1.)
-    findings.push_back({{"Matrix/Mesh modulus ratio", "Matrix/Join"},
-                        "there are no matrix grains that the mesh could differ from. Give "
-                        "1, or " +
-                            otherwise + "."});
-  if (p.run.strain == "finite")
-    findings.push_back({{"Run/Strain", "Matrix/Join"},
-                        "a surface interface joins a mesh of small strain. Give small, or " +
-                            otherwise + "."});
-  // The corners of the layer are looked for between its ends and the mesh.
-  const double slope =
-      M_PI * p.layer.amplitude_ratio * p.layer.thickness / p.layer_length();
-  if (p.layer.shape == "cosine" && slope > 0.95)
-    findings.push_back(
-        {{"Layer/Amplitude ratio", "Matrix/Join"},
-         "the limbs would dip by " + short_text(180. / M_PI * std::atan(slope)) +
-             " degrees, and from 44 on the layer's upper grains cannot be told from those "
-             "of its ends. Give at most " +
-             short_text(std::floor(95. * p.layer.amplitude_ratio / slope) / 100.) +
-             ", or " + otherwise + "."});
-}
-
 void check_run(const Parameters &p, Findings &findings)
 {
   if (p.run.end_shortening > p.run.longest_shortening)
@@ -444,10 +363,8 @@ std::vector<Finding> check_parameters(const Parameters &p)
   }
   if (p.has("layer") && p.has("matrix"))
     check_matrix(p, findings);
-  if (p.is_bridged())
-    check_bridging(p, findings);
-  if (p.has_surface_interface())
-    check_surface_interface(p, findings);
+  if (p.joins_grains_and_mesh())
+    check_join(p, findings);
   check_run(p, findings);
   check_event_driver(p, findings);
   check_materials(p, findings);

@@ -123,6 +123,21 @@ void declare(BridgingParameters &bridging, Declarations &entries)
                  Number::above(0.).up_to(0.1));
   entries.flag("Constraint", bridging.constraint,
                "Are the two models joined? false only to see what the constraint does.");
+  entries.choice(
+      "Multipliers", bridging.multipliers,
+      "What the constraint demands: that the mean of the grains around each vertex of "
+      "the mesh follows it; or around each of a coarser mesh, for cells below two grain "
+      "diameters; or each grain by itself, for lattices.",
+      "mesh|coarsened|per grain");
+  entries.number("Overlap damping", bridging.damping,
+                 "Rate at which motion of the grains relative to the mesh dies out in the "
+                 "overlap, over c/d, c the speed of P waves in the matrix; 0: none. 0.05 "
+                 "takes the waves that the mesh cannot carry [-].",
+                 Number::at_least(0.).up_to(1.));
+  entries.whole("Sub-cycles", bridging.sub_cycles,
+                "Steps of the grains for which the mesh's forces are evaluated once, by "
+                "the dynamic driver; at most 0.3 of the mesh's stable step.",
+                Number::at_least(1.).whole());
   entries.leave();
 }
 

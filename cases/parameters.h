@@ -133,6 +133,9 @@ struct BridgingParameters
   std::string ramp = "automatic"; ///< automatic | linear | cubic
   double weight_floor = 1e-3;     ///< eps
   bool constraint = true; ///< false: the two models are not joined (negative control)
+  std::string multipliers = "mesh"; ///< mesh | coarsened | per grain
+  double damping = 0.;              ///< rate in the overlap over c/d; 0: none [-]
+  int sub_cycles = 1;               ///< steps of the grains in one of the mesh
 };
 
 struct FoundationParameters

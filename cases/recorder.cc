@@ -54,6 +54,9 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
   if (per_step > 0.)
     sample_interval_ = std::max<std::int64_t>(
         1, std::llround(1e-3 / (p.output.samples_per_millistrain * per_step)));
+  if (p.is_bridged()) // its ledger is that of steps in which the mesh acts
+    sample_interval_ += (p.bridging.sub_cycles - sample_interval_ % p.bridging.sub_cycles) %
+                        p.bridging.sub_cycles;
   if (scene.parameters.is_specimen())
     specimen_.emplace(scene);
   if (!resumed && writes_tables())

@@ -2,6 +2,7 @@
 
 #include "cases/inertia.h"
 #include "cases/mesh_strips.h"
+#include "cases/overlap.h"
 #include "cases/scene_components.h"
 #include "cases/scene_events.h"
 #include "cases/section_contacts.h"
@@ -235,11 +236,15 @@ build_bodies(const Parameters &p, const MPI_Comm communicator, const Progress &p
       for (discrete::WallContact &contact : wall.contacts)
         contact.weight = weight.grains(state.grains.reference(contact.grain));
     const double cell = p.matrix.cell_size * scene->geometry.diameter();
+    const BridgingOptions options = bridging_options(*scene, weight);
+    if (const std::size_t n = options.tied_grains.size(); n > 0)
+      progress(std::to_string(n) + (n == 1 ? " grain" : " grains") +
+               " of the overlap that nothing else holds, tied to the mesh");
     // Vertices beyond the rim that fewer grains reach than there are vertices would make
     // the constraint singular.
     scene->bridging = std::make_unique<BridgingDomain>(
         state.grains, state.joints, *scene->solid, weight,
-        0.1 * scene->grains->matrix->bulk_density * cell * cell);
+        0.1 * scene->grains->matrix->bulk_density * cell * cell, options);
     scene->mass_weight = scene->bridging->grain_mass_weight();
   }
   if (p.has_surface_interface())

@@ -2,6 +2,7 @@
 #include "cases/scene_components.h"
 
 #include "cases/inertia.h"
+#include "cases/overlap.h"
 #include "cases/prestress.h"
 #include "cases/scene.h"
 #include "cases/section_contacts.h"
@@ -11,6 +12,8 @@
 #include "continuum/section_mesh.h"
 #include "coupling/absorbing_component.h"
 #include "coupling/mesh_step_check.h"
+#include "coupling/overlap_damping.h"
+#include "coupling/subcycled_mesh.h"
 #include "coupling/surface_component.h"
 
 #include <algorithm>
@@ -39,6 +42,8 @@ enum Rank
   rank_membrane = 45, // before the grains move on
   rank_loads = 60,
   rank_base = 90,
+  rank_tied_grains = 93,
+  rank_overlap_damping = 94,
   rank_surface_tie = 94, // forces are constrained before anything looks at them
   rank_constrained = 95,
   rank_damping = 96,
@@ -294,6 +299,33 @@ void add_walls(Scene &scene)
   }
 }
 
+/// The constraint of the overlap and what the deck asks for beside it.
+void add_bridging(Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  Simulation &simulation = *scene.simulation;
+  BridgingDomain &domain = *scene.bridging;
+  GrainState &grains = scene.grains->state;
+  MeshState &mesh = *scene.mesh;
+  const std::string name = "bridging domain", reason = reason_for(p, name);
+  simulation.add(std::make_unique<Bridging>(domain, grains, mesh), {Stage::constrain}, 0,
+                 name, reason);
+  if (!domain.ties().empty())
+    simulation.add(std::make_unique<TiedGrains>(domain.ties(), grains, mesh),
+                   {Stage::damp}, rank_tied_grains, name, reason);
+  if (const double rate = overlap_damping_rate(scene); rate > 0.)
+    simulation.add(
+        std::make_unique<OverlapDamping>(domain, *scene.solid, grains, mesh, rate),
+        {Stage::damp, Stage::drift}, rank_overlap_damping, "overlap damping",
+        reason_for(p, "overlap damping"));
+  if (p.bridging.sub_cycles == 1)
+    return;
+  // Resonance grows without end; a ledger that is open by this much has begun to.
+  simulation.add(std::make_unique<EnergyWatch>(simulation, 0.05), {Stage::sample}, 0,
+                 "sub-cycling", reason_for(p, "sub-cycling"));
+  scene.wall_motion->average_over(p.bridging.sub_cycles);
+}
+
 /// The layer on the edges of the mesh.
 void add_surface_interface(Scene &scene)
 {
@@ -346,10 +378,13 @@ void add_common_components(Scene &scene)
         .damped = p.has("damping");
   if (mesh != nullptr)
   {
+    const bool sub_cycles = domain != nullptr && p.bridging.sub_cycles > 1;
     simulation
-        .add(std::make_unique<MeshMotion>(*mesh, scene.walls),
-             {Stage::forces, Stage::kick, Stage::drift}, rank_mesh, "mesh",
-             reason_for(p, "mesh"))
+        .add(make_mesh_motion(scene),
+             sub_cycles ? std::vector<Stage>{Stage::forces, Stage::damp, Stage::kick,
+                                             Stage::drift}
+                        : std::vector<Stage>{Stage::forces, Stage::kick, Stage::drift},
+             rank_mesh, "mesh", reason_for(p, "mesh"))
         .damping = mesh_damping;
   }
   if (const auto *const finite =
@@ -371,9 +406,7 @@ void add_common_components(Scene &scene)
         {Stage::damp, Stage::kick, Stage::drift}, rank_absorbing, "absorbing boundary",
         reason_for(p, "absorbing boundary"));
   if (domain != nullptr)
-    simulation.add(std::make_unique<Bridging>(*domain, *grains, *mesh),
-                   {Stage::constrain}, 0, "bridging domain",
-                   reason_for(p, "bridging domain"));
+    add_bridging(scene);
   if (scene.surface)
     add_surface_interface(scene);
 }

@@ -184,6 +184,11 @@ void Walls::react(const Clock &clock)
         mesh_->force.begin()[entry.dof] +
         (domain_ != nullptr ? domain_->mesh_impulse(entry.dof) / clock.dt : 0.);
     support_work_ += 0.5 * clock.dt * entry.reaction * entry.before;
+    entry.sum += entry.reaction;
+    if ((clock.step + 1) % averaged_ != 0)
+      continue;
+    entry.mean = entry.sum / static_cast<double>(averaged_);
+    entry.sum = 0.;
   }
 }
 
@@ -202,7 +207,7 @@ double Walls::mesh_reaction(const bool of_layer) const
   double sum = 0.;
   for (const PrescribedDof &entry : mesh_->prescribed)
     if (entry.wall >= 0)
-      sum += (of_layer ? entry.layer_share : 1.) * entry.reaction *
+      sum += (of_layer ? entry.layer_share : 1.) * entry.mean *
              walls_[entry.wall].normal.x;
   return dealii::Utilities::MPI::sum(sum, mesh_->communicator()) /
          static_cast<double>(walls_.size());
@@ -237,5 +242,17 @@ void Walls::visit_state(StateArchive &archive)
   visit_walls(archive, "walls", walls_);
   archive.value("walls/closure_before", closure_before_);
   archive.owned_value("walls/support_work", support_work_);
+  if (averaged_ == 1)
+    return;
+  for (const auto &[name, member] : {std::pair{"walls/mean", &PrescribedDof::mean},
+                                     std::pair{"walls/sum", &PrescribedDof::sum}})
+  {
+    std::vector<double> values;
+    for (const PrescribedDof &entry : mesh_->prescribed)
+      values.push_back(entry.*member);
+    archive.owned_array(name, values);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      mesh_->prescribed[k].*member = values[k];
+  }
 }
 } // namespace antiform::coupling

@@ -132,6 +132,10 @@ public:
   };
   void preload(Preload preload) { preload_ = std::move(preload); }
 
+  /// Give mesh_reaction() as the mean of this many steps: the forces of a sub-cycled mesh
+  /// come as impulses.
+  void average_over(const std::int64_t steps) { averaged_ = steps; }
+
 private:
   void set_speeds(const Clock &clock);
   void react(const Clock &clock);
@@ -143,6 +147,7 @@ private:
   const BridgingDomain *domain_;
   std::function<double(double)> speed_;
   Preload preload_;
+  std::int64_t averaged_ = 1; ///< steps
   double closure_before_ = 0.; ///< way of the walls when shortening begins [m]
   double support_work_ = 0.;   ///< of the prescribed mesh dofs [J]
 };

@@ -16,6 +16,8 @@ struct PrescribedDof
   double layer_share = 0.; ///< of the reaction, that the competent layer takes
   double before = 0.;      ///< velocity before the kick [m/s]
   double reaction = 0.;    ///< force of the support on the mesh, of the last step [N]
+  double mean = 0.;        ///< of the reactions of Walls::average_over() steps [N]
+  double sum = 0.;         ///< of those since then [N]
 };
 
 /// The mesh as the loop moves it.

@@ -113,9 +113,11 @@ ConstraintRows constraint_rows(const discrete::Grains &grains,
   double least = space == MultiplierSpace::per_grain ? 0. : smallest_mass;
   if (space == MultiplierSpace::coarsened)
   {
+    // Two cells of one diameter, whose size a deck gives by the mean that it asks for and
+    // that a packing meets within some percents, are to count as two diameters.
     const CoarseVertices coarse = coarsened_vertices(
         solid, vertices,
-        2. * diameters / static_cast<double>(result.overlap_grains.size()));
+        1.9 * diameters / static_cast<double>(result.overlap_grains.size()));
     rows = coarsened_rows(by_vertex, coarse);
     least *= coarse.cells;
   }

@@ -32,7 +32,7 @@ enum class MultiplierSpace
 {
   /// One multiplier a vertex of the mesh: the mean of the grains around it follows.
   mesh,
-  /// One a vertex of a coarser mesh, made of the lines of the mesh that are at least two
+  /// One a vertex of a coarser mesh, made of the lines of the mesh that are at least 1.9
   /// grain diameters apart: for cells smaller than that, whose own vertices share their
   /// grains. The same as `mesh` for larger cells.
   coarsened,

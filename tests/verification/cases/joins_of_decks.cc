@@ -222,4 +222,145 @@ TEST(JoinsOfDecks, CarryACoverTooThinForAnOverlap)
   EXPECT_EQ(summary.at("effects").at("bridging domain").at("calls"), 0);
   EXPECT_LT(summary.at("energy").at("closure_error"), 1e-9);
 }
+
+// Other spaces of multipliers are other ways to the same section.
+TEST(JoinsOfDecks, MultipliersAreTheDecks)
+{
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string &name, const std::vector<std::string> &entries)
+  {
+    const Outcome outcome = run_tiny(folder.path(name), set(slow(entries)));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return summary_of(folder.path(name));
+  };
+  const std::vector<std::string> fine{"Matrix/Cell size ratio=1",
+                                      "Bridging domain/Multipliers=coarsened"};
+  const auto mesh = run("mesh", {}), coarsened = run("coarsened", fine),
+             per_grain = run("per_grain", {"Bridging domain/Multipliers=per grain"});
+  const auto multipliers = [](const nlohmann::json &summary)
+  { return summary.at("sizes").at("multipliers").get<double>(); };
+  // Lines two diameters apart, as those of the mesh of such cells.
+  EXPECT_EQ(multipliers(coarsened), multipliers(mesh));
+  EXPECT_GT(multipliers(per_grain), 1.5 * multipliers(mesh)); // 2 a grain of the overlap
+  // The overlap is 4 d wide, where patch tests leave errors of 2 to 4 % in the joints
+  // beside it (bridging.md, 11), and its part of the section's stiffness is a twentieth.
+  for (const auto &other : {coarsened, per_grain})
+    EXPECT_NEAR(result(other, "section_stiffness") / result(mesh, "section_stiffness"),
+                1., 3e-3);
+}
+
+// Joints of one element bear no moment: a grain of the overlap that the cut has left with
+// one of them would roll.
+TEST(JoinsOfDecks, GrainsThatNothingHoldsFollowTheMesh)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> rolling = unbreakable(
+      {"Layer/Flat joint/Elements=1", "Layer/Flat joint/Element moment=false",
+       "Layer/Installation gap ratio=0.15", "Layer/Seed=4"});
+  const Outcome outcome = run_tiny(folder.path("run"), set(rolling));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json summary = summary_of(folder.path("run"));
+  EXPECT_LT(summary.at("energy").at("closure_error"), 1e-9);
+
+  const auto scene = scene_of(rolling);
+  const auto &ties = scene->bridging->ties().ties();
+  ASSERT_GT(ties.size(), 0u);
+  EXPECT_NE(outcome.output.find(std::to_string(ties.size()) + " grain"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("tied to the mesh"), std::string::npos) << outcome.output;
+  for (int step = 0; step < 300; ++step)
+    scene->simulation->step();
+  const discrete::Grains &grains = scene->grains->state.grains;
+  for (const coupling::GrainTie &tie : ties)
+  {
+    Vec2 at;
+    for (const coupling::GrainTie::Node &node : tie.nodes)
+      at += node.value * Vec2{scene->mesh->displacement(node.dof_x),
+                              scene->mesh->displacement(node.dof_y)};
+    const Vec2 moved{grains.displacement_x[tie.grain], grains.displacement_y[tie.grain]};
+    EXPECT_GT(norm(moved), 0.);
+    EXPECT_LT(norm(moved - at), 1e-12 * norm(moved));
+  }
+  EXPECT_TRUE(scene_of(unbreakable())->bridging->ties().empty());
+}
+
+TEST(JoinsOfDecks, OverlapDampingIsInTheLedger)
+{
+  const TemporaryFolder folder;
+  for (const char *rate : {"0", "0.05"})
+  {
+    const std::string directory = folder.path(std::string("rate") + rate);
+    const Outcome outcome = run_tiny(
+        directory, set(unbreakable({"Components=layer, matrix, walls",
+                                    "Run/Driver=dynamic", "Walls/Ramp=0.2",
+                                    std::string("Bridging domain/Overlap damping=") +
+                                        rate})));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json summary = summary_of(directory);
+    const bool damped = std::string(rate) != "0";
+    EXPECT_EQ(summary.at("effects").at("overlap damping").at("calls"),
+              damped ? summary.at("steps").get<int>() : 0);
+    const double taken = summary.at("energy").at("damping");
+    if (damped)
+      EXPECT_GT(taken, 1e-6 * summary.at("energy").at("boundary_work").get<double>());
+    else
+      EXPECT_EQ(taken, 0.);
+    // Leapfrog keeps the energy of linear forces; waves of 2e-4 turn joints a little.
+    EXPECT_LT(summary.at("energy").at("closure_error"), 2e-8);
+  }
+}
+
+// Cells of 16 d beside grains of d: their mesh may be left alone for five steps.
+TEST(JoinsOfDecks, MeshMayBeSubCycled)
+{
+  const TemporaryFolder folder;
+  const auto run = [&](const int n, const std::string &name)
+  {
+    return run_tiny(
+        folder.path(name),
+        set(unbreakable(
+            {"Components=layer, matrix, walls", "Run/Driver=dynamic",
+             "Matrix/Cell size ratio=16", "Matrix/Largest cell ratio=16",
+             "Matrix/Burial depth ratio=9", "Matrix/Base depth ratio=9",
+             "Bridging domain/Overlap width ratio=32",
+             "Bridging domain/Overlap damping=0.05",
+             "Bridging domain/Sub-cycles=" + std::to_string(n)})));
+  };
+  ASSERT_EQ(run(1, "every").status, 0);
+  ASSERT_EQ(run(5, "fifth").status, 0);
+  const nlohmann::json every = summary_of(folder.path("every")),
+                       fifth = summary_of(folder.path("fifth"));
+  EXPECT_EQ(fifth.at("steps").get<int>() % 5, 1); // it ends with a record
+  const CsvTable a(folder.path("every/history.csv")), b(folder.path("fifth/history.csv"));
+  // Forces of walls that bring waves with them, at one shortening. The mean over the five
+  // steps before lies two steps and a half back, of some forty in a transit of the layer.
+  const auto strains = a.column("shortening"), forces = a.column("wall_force_N"),
+             strain = b.column("shortening"), force = b.column("wall_force_N");
+  double difference = 0., largest = 0.;
+  for (std::size_t k = 1, n = 1; k < strain.size(); ++k)
+  {
+    while (n + 1 < strains.size() && strains[n] < strain[k])
+      ++n;
+    const double s = (strain[k] - strains[n - 1]) / (strains[n] - strains[n - 1]);
+    const double expected = forces[n - 1] + s * (forces[n] - forces[n - 1]);
+    difference = std::max(difference, std::abs(force[k] - expected));
+    largest = std::max(largest, std::abs(expected));
+  }
+  EXPECT_LT(difference, 0.05 * largest);
+  EXPECT_LT(every.at("energy").at("closure_error"), 1e-6);
+  // (omega n dt)^2 of the waves that the mesh carries.
+  EXPECT_LT(fifth.at("energy").at("closure_error"), 1e-4);
+  EXPECT_EQ(fifth.at("effects").at("sub-cycling").at("active"), true);
+
+  const Outcome seldom = run(50, "seldom");
+  EXPECT_EQ(seldom.status, 1);
+  EXPECT_NE(seldom.output.find("'Bridging domain/Sub-cycles' is 50"), std::string::npos)
+      << seldom.output;
+  const std::size_t give = seldom.output.find("Give ");
+  ASSERT_NE(give, std::string::npos);
+  const int possible = std::stoi(seldom.output.substr(give + 5));
+  EXPECT_EQ(run(possible, "possible").status, 0);
+  EXPECT_EQ(run(possible + 1, "too_seldom").status, 1);
+}
 } // namespace joins_of_decks_tests
