@@ -43,7 +43,9 @@ std::string read(const std::string &file)
 
 const std::vector<std::string> all_decks = {"burial-depth/anticline.prm",
                                             "burial-depth/quick.prm",
-                                            "burial-depth/comparison.prm"};
+                                            "burial-depth/comparison.prm",
+                                            "comparison/buried.prm",
+                                            "comparison/quick.prm"};
 
 std::string deck_of_repository(const std::string &name)
 {
