@@ -6,14 +6,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <ctime>
 
 namespace antiform::coupling::test
 {
-/// Largest stress of @p specimen [Pa] when its shortening goes on at a constant rate:
-/// @p transits times the way of a sound wave along its height for a shortening of
-/// @p strain, at which it ends. Densities are scaled; damping is combined, 0.7, so that
-/// the drift does not rub.
-inline double slow_peak(Specimen &specimen, const double transits, const double strain)
+/// Seconds of the processor that this process has used.
+inline double processor_seconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// What slow loading found, and what it took to the peak and to its end.
+struct SlowLoading
+{
+  double peak = 0.;   ///< largest stress [Pa]
+  double stress = 0.; ///< at the end [Pa]
+  double peak_strain = 0.;
+  std::uint64_t peak_steps = 0, steps = 0;
+  double peak_seconds = 0., seconds = 0.; ///< of the processor
+};
+
+/// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave along
+/// its height for a shortening of @p strain. It ends when the stress is @p stop_drop below
+/// the largest so far, 0: at @p strain. Densities are scaled; damping is combined, 0.7, so
+/// that the drift does not rub.
+inline SlowLoading slow_loading(Specimen &specimen,
+                                const double transits,
+                                const double strain,
+                                const double stop_drop = 0.)
 {
   GrainBalance body(specimen.state, specimen.platens);
   discrete::Grains &grains = specimen.state.grains;
@@ -39,16 +60,33 @@ inline double slow_peak(Specimen &specimen, const double transits, const double 
   discrete::GrainDamping damping;
   damping.coefficient = 0.7;
   damping.combined = true;
-  double peak = 0.;
-  const auto n = static_cast<std::uint64_t>(std::ceil(strain / (rate * dt)));
-  for (std::uint64_t step = 0; step < n; ++step)
+  SlowLoading result;
+  const double start = processor_seconds();
+  const double most = stop_drop > 0. ? 10. * strain : strain;
+  const auto n = static_cast<std::uint64_t>(std::ceil(most / (rate * dt)));
+  for (; result.steps < n; ++result.steps)
   {
-    body.add_forces({step, static_cast<double>(step) * dt, dt}, &specimen.state.cracks,
-                    false);
-    peak = std::max(peak, specimen.stress(body.conjugate_force()));
+    const double time = static_cast<double>(result.steps) * dt;
+    body.add_forces({result.steps, time, dt}, &specimen.state.cracks, false);
+    result.stress = specimen.stress(body.conjugate_force());
+    if (result.stress > result.peak)
+    {
+      result.peak = result.stress;
+      result.peak_strain = rate * time;
+      result.peak_steps = result.steps;
+      result.peak_seconds = processor_seconds() - start;
+    }
+    if (result.stress < (1. - stop_drop) * result.peak && stop_drop > 0.)
+      break;
     discrete::damped_kick(grains, dt, damping);
     discrete::drift(grains, dt);
   }
-  return peak;
+  result.seconds = processor_seconds() - start;
+  return result;
+}
+
+inline double slow_peak(Specimen &specimen, const double transits, const double strain)
+{
+  return slow_loading(specimen, transits, strain).peak;
 }
 } // namespace antiform::coupling::test

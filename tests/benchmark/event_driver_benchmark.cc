@@ -1,0 +1,90 @@
+// Loading from event to event beside explicit loading at 300 wave transits to the same
+// peak: seconds of one core, to the peak and through a stress drop of 10 %. Specimens of
+// about 1000, 4000 and 15000 grains, one after the other in one run, each with both.
+// Arguments: first and last seed (1 1), largest number of grains (15000).
+#include "support/slow_loading.h"
+#include "support/specimen_fixture.h"
+
+#include "discrete/joints.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+using namespace antiform::coupling;
+using namespace antiform::coupling::test;
+
+namespace
+{
+/// A run of the driver, as it was at its largest force and at its end.
+struct Ascent
+{
+  LoadRecord peak;
+  DriverReport at_peak, report;
+  double peak_seconds = 0., seconds = 0.;
+};
+
+Ascent climb(Specimen &specimen)
+{
+  Ascent ascent;
+  const double start = processor_seconds();
+  GrainBalance body(specimen.state, specimen.platens);
+  const DriverSettings settings;
+  EventDriver driver(body, settings);
+  while (true)
+  {
+    const LoadRecord &record = driver.find_balance();
+    ascent.seconds = processor_seconds() - start;
+    if (record.force > ascent.peak.force)
+    {
+      ascent.peak = record;
+      ascent.at_peak = driver.report();
+      ascent.peak_seconds = ascent.seconds;
+    }
+    if (record.force < (1. - settings.stop_drop) * driver.largest_force())
+      break;
+    driver.step_towards(0.1);
+  }
+  ascent.report = driver.report();
+  return ascent;
+}
+
+void print(const char *what, const DriverReport &report, const double seconds)
+{
+  std::printf("  driver to the %-9s %4ld load steps %6ld batches %6ld breaks %6ld solves "
+              "%6ld evaluations %2ld hand-overs %7ld steps %7.2f s\n",
+              what, report.load_steps, report.batches, report.breaks, report.solves,
+              report.evaluations, report.hand_overs, report.explicit_steps, seconds);
+}
+
+void compare(const double width, const std::uint64_t seed)
+{
+  Specimen one(width, seed), other(width, seed);
+  const Ascent driver = climb(one);
+  const SlowLoading slow = slow_loading(other, 300., driver.peak.load, 0.1);
+  std::printf("%zu grains, %zu joints, seed %lu\n", one.n_grains(),
+              one.state.joints.size(), seed);
+  print("peak:", driver.at_peak, driver.peak_seconds);
+  print("drop:", driver.report, driver.seconds);
+  std::printf("  explicit to the peak %8lu steps %7.2f s, to the drop %8lu steps %7.2f s\n",
+              slow.peak_steps, slow.peak_seconds, slow.steps, slow.seconds);
+  std::printf("  peaks %.2f MPa at %.4g, explicit %.2f MPa at %.4g, ratio %.3f\n",
+              1e-6 * one.stress(driver.peak.force), driver.peak.load, 1e-6 * slow.peak,
+              slow.peak_strain, one.stress(driver.peak.force) / slow.peak);
+  std::printf("  seconds over those of explicit loading: peak %.3f, drop %.3f\n",
+              driver.peak_seconds / slow.peak_seconds, driver.seconds / slow.seconds);
+  std::fflush(stdout);
+}
+} // namespace
+
+int main(const int argc, char **argv)
+{
+  const int first = argc > 1 ? std::atoi(argv[1]) : 1,
+            last = argc > 2 ? std::atoi(argv[2]) : first,
+            most = argc > 3 ? std::atoi(argv[3]) : 15000;
+  std::printf("kernel %s\n", antiform::discrete::joint_kernel_level().c_str());
+  for (int seed = first; seed <= last; ++seed)
+    for (const double width : {22., 44.5, 84.6})
+      if (2.1 * width * width < 1.1 * most)
+        compare(width, static_cast<std::uint64_t>(seed));
+  return 0;
+}
