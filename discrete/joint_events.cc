@@ -1,5 +1,7 @@
 #include "discrete/joint_events.h"
 
+#include "discrete/joint_kernel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,24 +23,27 @@ LoadFactor load_factor(const BondedElement &element)
 
 namespace
 {
+/// Whether elements of the group's joints can break.
+bool is_breakable(const JointGroup &group)
+{
+  if (!constants(group.law).breakable)
+    return false;
+  if (is_brittle(group.law))
+    throw std::invalid_argument("joints '" + group.name +
+                                "' break as a whole: only elements of flat joints can "
+                                "be listed by their load");
+  return true;
+}
+
 /// Call @p action with each joint that can still break, and the number of its elements.
 template <class Action>
 void for_breakable(const Joints &joints, const Action &action)
 {
   for (const JointGroup &group : joints.groups)
-  {
-    const BondConstants law = constants(group.law);
-    if (!law.breakable)
-      continue;
-    if (is_brittle(group.law))
-      throw std::invalid_argument(
-          "joints '" + group.name +
-          "' break as a whole: only elements of flat joints can "
-          "be listed by their load");
-    for (std::size_t j = group.begin; j < group.end; ++j)
-      if (joints.damage[j] < 0 || !joints.damaged.removed[joints.damage[j]])
-        action(j, law.n_elements);
-  }
+    if (is_breakable(group))
+      for (std::size_t j = group.begin; j < group.end; ++j)
+        if (joints.damage[j] < 0 || !joints.damaged.removed[joints.damage[j]])
+          action(j, constants(group.law).n_elements);
 }
 
 bool is_bonded(const Joints &joints, const std::size_t j, const int e)
@@ -71,26 +76,66 @@ step_to_break(const BondedElement &now, const BondedElement &then, const double 
 }
 } // namespace
 
-std::vector<LoadedElement> overstressed_elements(const Grains &grains,
-                                                 const Joints &joints)
+namespace
 {
+/// Those of joint @p j, which has @p n elements.
+void add_overstressed(const Grains &grains,
+                      const Joints &joints,
+                      const std::size_t j,
+                      const int n,
+                      std::vector<LoadedElement> &over)
+{
+  const std::int32_t k = joints.damage[j];
+  if (k >= 0 && joints.damaged.removed[k])
+    return;
+  bool any_bonded = false;
+  for (int e = 0; e < n; ++e)
+    any_bonded |= is_bonded(joints, j, e);
+  if (!any_bonded)
+    return;
+  const JointDeformation d = deformation(grains, joints, j);
+  for (int e = 0; e < n; ++e)
+  {
+    if (!is_bonded(joints, j, e))
+      continue;
+    const LoadFactor factor = load_factor(bonded_element(joints, j, e, d));
+    if (factor.value >= 1.)
+      over.push_back({j, e, factor,
+                      0.5 * (grains.position(joints.first[j]) +
+                             grains.position(joints.second[j]))});
+  }
+}
+} // namespace
+
+std::vector<LoadedElement> overstressed_elements(const Grains &grains, Joints &joints)
+{
+  const KernelLevel &level = kernel_level();
+  fill_lines(grains, joints);
+  joints.work.lines_filled = false; // the grains will have moved when they are used next
   std::vector<LoadedElement> over;
-  for_breakable(joints,
-                [&](const std::size_t j, const int n)
-                {
-                  const JointDeformation d = deformation(grains, joints, j);
-                  for (int e = 0; e < n; ++e)
-                  {
-                    if (!is_bonded(joints, j, e))
-                      continue;
-                    const LoadFactor factor =
-                        load_factor(bonded_element(joints, j, e, d));
-                    if (factor.value >= 1.)
-                      over.push_back({j, e, factor,
-                                      0.5 * (grains.position(joints.first[j]) +
-                                             grains.position(joints.second[j]))});
-                  }
-                });
+  for (const JointGroup &group : joints.groups)
+  {
+    if (!is_breakable(group))
+      continue;
+    const IntactKernelInput input = intact_input(joints, group, true);
+    const int n = constants(group.law).n_elements;
+    for (std::size_t begin = group.begin; begin < group.end; begin += intact_block)
+    {
+      const std::size_t end = std::min(begin + intact_block, group.end);
+      alignas(64) JointForce force[intact_block];
+      std::int32_t beyond[intact_block];
+      const std::size_t n_beyond = level.intact(input, begin, end, force, beyond);
+      std::size_t next = 0;
+      for (std::size_t j = begin; j < end; ++j)
+      {
+        const bool is_beyond =
+            next < n_beyond && static_cast<std::size_t>(beyond[next]) == j;
+        next += is_beyond ? 1 : 0;
+        if (is_beyond || joints.damage[j] >= 0)
+          add_overstressed(grains, joints, j, n, over);
+      }
+    }
+  }
   return over;
 }
 

@@ -28,10 +28,9 @@ struct LoadedElement
 };
 
 /// All bonded elements of breakable flat joints that are at a strength or beyond, in
-/// the order of joints and elements. Looks at the present displacements alone; nothing
-/// is changed. Throws std::invalid_argument where a breakable joint is no flat joint.
-std::vector<LoadedElement> overstressed_elements(const Grains &grains,
-                                                 const Joints &joints);
+/// the order of joints and elements. Looks at the present displacements alone; nothing but
+/// the kernels' memory is changed: theirs is the search among intact joints. Throws std::invalid_argument where a breakable joint is no flat joint.
+std::vector<LoadedElement> overstressed_elements(const Grains &grains, Joints &joints);
 
 /// For every bonded element of the breakable joints that nears a strength while the
 /// grains move by their velocities per unit of load: the load step after which it is

@@ -12,18 +12,15 @@
 
 namespace antiform::discrete
 {
-namespace
-{
-IntactKernelInput kernel_input(Joints &joints,
+IntactKernelInput intact_input(const Joints &joints,
                                const JointGroup &group,
-                               const std::vector<GrainLine> &lines,
                                const bool look_at_strengths)
 {
   const BondConstants law = constants(group.law);
   const auto pointer = [](const std::vector<double> &v)
   { return v.empty() ? nullptr : v.data(); };
   IntactKernelInput in{};
-  in.grains = lines.data();
+  in.grains = joints.work.lines.data();
   in.first = joints.first.data();
   in.second = joints.second.data();
   in.normal_x = joints.normal_x.data();
@@ -51,7 +48,6 @@ IntactKernelInput kernel_input(Joints &joints,
   in.tan_friction = tested ? law.tan_friction : 0.;
   return in;
 }
-} // namespace
 
 void fill_lines(const Grains &grains, Joints &joints)
 {
@@ -370,7 +366,7 @@ void evaluate_bonds(Grains &grains,
   work.lines_filled = false; // the grains will have moved
   work.inputs.clear();
   for (const JointGroup &group : joints.groups)
-    work.inputs.push_back(kernel_input(joints, group, work.lines, new_cracks != nullptr));
+    work.inputs.push_back(intact_input(joints, group, new_cracks != nullptr));
 
 #pragma omp parallel for schedule(static, 1) if (threaded)
   for (std::size_t p = 0; p < n_parts; ++p)

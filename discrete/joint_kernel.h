@@ -40,6 +40,11 @@ struct IntactKernelInput
   double tan_friction;
 };
 
+/// Of group @p group. The grain lines are those of the joints' work: fill_lines().
+/// \param look_at_strengths or none is reached
+IntactKernelInput
+intact_input(const Joints &joints, const JointGroup &group, bool look_at_strengths);
+
 /// Forces of the intact joints begin .. end - 1 of a group, at most intact_block of them:
 /// @p force[0] is that of joint begin.
 /// \return number of entries written to @p over: joints beyond a strength, ascending
