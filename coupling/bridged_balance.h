@@ -58,7 +58,7 @@ public:
                   std::vector<discrete::Crack> *cracks,
                   bool keep_forces);
   /// Explicit damped motion from rest under held supports, as settle() of grains.
-  HeldResult settle(const HeldDynamics &settings, const BalanceRatios &limits);
+  HeldResult settle(const HeldDynamics &settings, const RestGoal &goal);
 
   /// As WalledGrains has them. A state is loaded after the arrays of grains and mesh.
   void find_contacts(double reach, const std::vector<double> &modulus);

@@ -19,8 +19,7 @@ void bring_to_rest(discrete::Grains &grains, MeshState &mesh)
 }
 } // namespace
 
-HeldResult BridgedBalance::settle(const HeldDynamics &settings,
-                                  const BalanceRatios &limits)
+HeldResult BridgedBalance::settle(const HeldDynamics &settings, const RestGoal &goal)
 {
   GrainState &state = grains_.state();
   discrete::Grains &grains = state.grains;
@@ -54,10 +53,11 @@ HeldResult BridgedBalance::settle(const HeldDynamics &settings,
     damping.run(Stage::kick, clock);
     of_mesh.run(Stage::kick, clock);
     domain_.project(grains, mesh_.velocity);
-    BalanceRatios allowed = limits;
+    BalanceRatios allowed = goal;
     if (result.steps > settings.patience)
-      allowed.mean = std::max(limits.mean, settings.collapsed);
-    if (clock.sample_due && found.within(allowed))
+      allowed.mean = std::max(goal.mean, settings.collapsed);
+    if (clock.sample_due &&
+        (found.within(allowed) || conjugate_force() < goal.least_force))
     {
       of_mesh.add_energies(books);
       books.kinetic += discrete::kinetic_energy(grains, before);
@@ -66,7 +66,7 @@ HeldResult BridgedBalance::settle(const HeldDynamics &settings,
     if (result.steps >= settings.most_steps)
       throw NumericalError("held dynamics",
                            "the body does not come to rest under held supports",
-                           found.mean, limits.mean, static_cast<long>(result.steps));
+                           found.mean, goal.mean, static_cast<long>(result.steps));
     discrete::drift(grains, clock.dt);
     of_mesh.run(Stage::drift, clock);
     ++result.steps;

@@ -23,6 +23,9 @@ EventDriver::EventDriver(GrainState &state,
   mean_diameter_ = 2. * std::accumulate(radius.begin(), radius.end(), 0.) / n;
   if (settings_.events_per_step == 0)
     settings_.events_per_step = std::max(1, static_cast<int>(std::lround(n / 300.)));
+  if (GrainBalance *grains = body.grains_alone();
+      grains != nullptr && settings_.local.radius > 0.)
+    local_.emplace(*grains, settings_.local, mean_diameter_);
   report_.solves = 1; // the tangent's, which does not change
 }
 
@@ -30,8 +33,8 @@ EventDriver::EventDriver(GrainBalance &body, const DriverSettings &settings)
     : EventDriver(
           body.state(),
           body,
-          [&body, dynamics = settings.dynamics](const BalanceRatios &limits)
-          { return settle(body, dynamics, limits); },
+          [&body, dynamics = settings.dynamics](const RestGoal &goal)
+          { return settle(body, dynamics, goal); },
           settings)
 {
 }
@@ -82,8 +85,13 @@ void EventDriver::balance()
       report_.least_held = std::min(report_.least_held, held_ - held);
     const std::vector<discrete::LoadedElement> over =
         discrete::overstressed_elements(state_.grains, state_.joints);
-    if (over.empty())
+    if (over.empty() && !far_field_waits_)
       return;
+    if (over.empty())
+    {
+      correct(corrections++);
+      continue;
+    }
     held = held_;
     break_batch(over);
     corrections = 0;
@@ -99,17 +107,40 @@ void EventDriver::break_batch(const std::vector<discrete::LoadedElement> &over)
   discrete::StepTime now;
   now.step = static_cast<std::uint64_t>(report_.load_steps);
   now.time = load_;
-  discrete::break_elements(state_.grains, state_.joints, batch, now, state_.cracks);
   ++report_.batches;
-  report_.breaks += static_cast<std::int64_t>(batch.size());
+  if (local_)
+    break_apart(batch, now);
+  else
+  {
+    discrete::break_elements(state_.grains, state_.joints, batch, now, state_.cracks);
+    report_.breaks += static_cast<std::int64_t>(batch.size());
+  }
   anderson_.reset();
   evaluate();
+}
+
+/// One after the other, each with what follows around it, while the rest stays in place.
+void EventDriver::break_apart(const std::vector<discrete::LoadedElement> &batch,
+                              const discrete::StepTime &now)
+{
+  const double allowed = body_.grains_alone()->allowed_force(settings_.limits);
+  for (const discrete::LoadedElement &element : batch)
+  {
+    const LocalResult result = local_->relax(element, now, allowed);
+    ++report_.local_moves;
+    report_.local_corrections += result.corrections;
+    report_.breaks += result.breaks;
+    held_ += result.held;
+    work_ += result.load_work;
+  }
+  far_field_waits_ = true;
 }
 
 void EventDriver::correct(const int corrections)
 {
   Eigen::VectorXd step = body_.solve(unbalanced_);
   ++report_.solves;
+  far_field_waits_ = false;
   if (corrections >= settings_.accelerate_after)
   {
     const Eigen::VectorXd &levers = body_.levers();
@@ -123,13 +154,24 @@ void EventDriver::correct(const int corrections)
 
 void EventDriver::hand_over()
 {
-  evaluate();
-  const bool past =
-      body_.conjugate_force() < (1. - settings_.past_peak) * largest_force_;
-  BalanceRatios limits = settings_.limits;
-  limits.mean = past ? settings_.settled_after_peak : settings_.settled_before_peak;
-  const HeldResult result = dynamics_(limits);
   ++report_.hand_overs;
+  far_field_waits_ = false;
+  come_to_rest(std::max(settings_.settled_before_peak, settings_.settled_after_peak));
+  // A body that has failed on the way is past its peak.
+  if (body_.conjugate_force() >= (1. - settings_.past_peak) * largest_force_ &&
+      settings_.settled_before_peak < settings_.settled_after_peak)
+    come_to_rest(settings_.settled_before_peak);
+}
+
+/// By explicit motion, to a mean ratio below @p mean.
+void EventDriver::come_to_rest(const double mean)
+{
+  RestGoal goal(settings_.limits);
+  goal.mean = mean;
+  if (settings_.stop_drop > 0.)
+    goal.least_force = (1. - settings_.stop_drop) * largest_force_;
+  evaluate();
+  const HeldResult result = dynamics_(goal);
   report_.explicit_steps += result.steps;
   held_ += result.dissipated;
   work_ += result.load_work;
@@ -216,9 +258,10 @@ void EventDriver::visit_state(StateArchive &archive)
   archive.value("event_driver/held", held_);
   archive.value("event_driver/least_held", report_.least_held);
   std::vector<std::int64_t *> counts{
-      &report_.load_steps, &report_.solves,     &report_.evaluations,
-      &report_.batches,    &report_.breaks,     &report_.hand_overs,
-      &report_.explicit_steps, &report_.most_corrections};
+      &report_.load_steps,     &report_.solves,           &report_.evaluations,
+      &report_.batches,        &report_.breaks,           &report_.local_moves,
+      &report_.local_corrections, &report_.hand_overs,    &report_.explicit_steps,
+      &report_.most_corrections};
   std::vector<std::int64_t> values;
   for (const std::int64_t *count : counts)
     values.push_back(*count);

@@ -3,6 +3,7 @@
 #include "coupling/anderson.h"
 #include "coupling/grain_balance.h"
 #include "coupling/held_dynamics.h"
+#include "coupling/local_moves.h"
 #include "coupling/simulation.h"
 #include "discrete/joint_events.h"
 
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace antiform::coupling
@@ -26,7 +28,9 @@ struct DriverSettings
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
 
-  int accelerate_after = 5; ///< corrections since the last break or load step
+  LocalSettings local; ///< of bodies that are grains alone
+
+  int accelerate_after = 2; ///< corrections since the last break or load step
   int anderson_depth = 6;
   int most_corrections = 400; ///< then the body is handed over to explicit motion
   double most_breaks = 0.125; ///< at one load, per grain: likewise
@@ -35,7 +39,9 @@ struct DriverSettings
   double past_peak = 0.05; ///< drop below the largest force that counts as after it [-]
   HeldDynamics dynamics;
 
-  double stop_drop = 0.1; ///< stop that far below the largest force [-]; 0: never
+  /// Stop that far below the largest force [-]; 0: never. Explicit motion that gets
+  /// there ends as it is, and the last record is not in balance.
+  double stop_drop = 0.1;
 };
 
 /// A state in balance without an overstressed bond.
@@ -56,6 +62,8 @@ struct DriverReport
   std::int64_t evaluations = 0; ///< of the forces, without those of explicit motion
   std::int64_t batches = 0;     ///< of bonds that broke together
   std::int64_t breaks = 0;      ///< in batches
+  std::int64_t local_moves = 0; ///< patches about a break that were balanced apart
+  std::int64_t local_corrections = 0; ///< in these
   std::int64_t hand_overs = 0;
   std::int64_t explicit_steps = 0;
   std::int64_t most_corrections = 0; ///< between two breaks or load steps
@@ -64,8 +72,9 @@ struct DriverReport
   std::vector<LoadRecord> records;
 };
 
-/// Explicit motion under held supports until the body is in balance within limits.
-using HandOver = std::function<HeldResult(const BalanceRatios &limits)>;
+/// Explicit motion under held supports until the goal is reached; a body that is looked
+/// at for balance alone may take it as its limits.
+using HandOver = std::function<HeldResult(const RestGoal &goal)>;
 
 /// Loads bonded grains without inertia: to the next few events; then, at that load,
 /// break the most loaded bond of each neighbourhood, restore balance, and again until
@@ -105,7 +114,10 @@ private:
   void balance();
   void break_batch(const std::vector<discrete::LoadedElement> &over);
   void correct(int corrections);
+  void break_apart(const std::vector<discrete::LoadedElement> &batch,
+                   const discrete::StepTime &now);
   void hand_over();
+  void come_to_rest(double mean);
   double step_size(double sign);
   void move(const Eigen::VectorXd &increment, double load_step);
   void evaluate();
@@ -117,6 +129,8 @@ private:
   HandOver dynamics_;
   DriverSettings settings_;
   Anderson anderson_;
+  std::optional<LocalMoves> local_;
+  bool far_field_waits_ = false; ///< parts were balanced and the whole not since
   double mean_diameter_ = 0.; ///< [m]
   double load_ = 0., largest_force_ = 0.;
   double work_ = 0., held_ = 0.; ///< [J]

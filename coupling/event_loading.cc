@@ -37,11 +37,10 @@ EventLoading::EventLoading(GrainState &state,
     alone_.emplace(state, bearing_walls(), held);
   driver_.emplace(
       state, body(),
-      [this](const BalanceRatios &limits)
+      [this](const RestGoal &goal)
       {
         const HeldDynamics &dynamics = options_.driver.dynamics;
-        return alone_ ? alone_->settle(dynamics, limits)
-                      : bridged_->settle(dynamics, limits);
+        return alone_ ? alone_->settle(dynamics, goal) : bridged_->settle(dynamics, goal);
       },
       options.driver);
 }

@@ -33,6 +33,28 @@ double mean_element_strength(const Joints &joints)
   return n > 0 ? sum / static_cast<double>(n) : 0.;
 }
 
+/// Of a joint, over sigma_b / k_n, for displacements of no unknown beyond 1 m, rotations
+/// at the rim.
+double most_deformation(const Grains &grains, const Joints &joints)
+{
+  double most = 0.;
+  for (const discrete::JointGroup &group : joints.groups)
+  {
+    const discrete::BondConstants law = discrete::constants(group.law);
+    if (!law.breakable || !(law.tensile_strength > 0.))
+      continue;
+    for (std::size_t j = group.begin; j < group.end; ++j)
+    {
+      const double rim =
+          std::min(grains.radius[joints.first[j]], grains.radius[joints.second[j]]);
+      most = std::max(most, joints.stiffness[j] / law.tensile_strength *
+                                (2. * std::sqrt(2.) +
+                                 (joints.length[j] + 2. * joints.half_length[j]) / rim));
+    }
+  }
+  return most;
+}
+
 Eigen::Index index(const std::size_t grain, const unsigned int component)
 {
   return static_cast<Eigen::Index>(3 * grain + component);
@@ -59,8 +81,10 @@ GrainBalance::GrainBalance(GrainState &state,
   const Grains &grains = state.grains;
   const auto n = static_cast<Eigen::Index>(3 * grains.size() + n_more);
   prescribed_ = rate_ = residual_ = support_ = Eigen::VectorXd::Zero(n);
+  dead_loads_ = Eigen::VectorXd::Zero(n);
   levers_ = Eigen::VectorXd::Ones(n);
   element_strength_ = mean_element_strength(state.joints);
+  most_deformation_ = most_deformation(grains, state.joints);
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
     levers_[index(i, 2)] = grains.radius[i];
@@ -68,9 +92,13 @@ GrainBalance::GrainBalance(GrainState &state,
       prescribed_.segment<3>(index(i, 0)).setOnes();
   }
   for (const GrainLoad &load : loads_)
+  {
     if (prescribed_[index(load.grain, 0)] > 0.)
       throw std::invalid_argument("grain " + std::to_string(load.grain) +
                                   " carries a load but no joint: nothing balances it");
+    dead_loads_.segment<3>(index(load.grain, 0)) +=
+        Eigen::Vector3d(load.force.x, load.force.y, load.torque);
+  }
   for (const PrescribedMotion &motion : prescribed)
   {
     prescribed_[index(motion.grain, motion.component)] = 1.;
@@ -118,9 +146,9 @@ void GrainBalance::assemble(const std::vector<Eigen::Triplet<double>> &springs)
   for (Eigen::Index i = 0; i < n_unknowns(); ++i)
     if (prescribed_[i] > 0.)
       entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.);
-  Eigen::SparseMatrix<double> matrix(n_unknowns(), n_unknowns());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_.emplace(matrix);
+  matrix_.resize(n_unknowns(), n_unknowns());
+  matrix_.setFromTriplets(entries.begin(), entries.end());
+  factor_.emplace(matrix_);
   tangent_ = solve(right) + rate_;
 }
 
@@ -182,14 +210,34 @@ BalanceRatios GrainBalance::ratios_with(const double further) const
 BalanceRatios GrainBalance::over_joint_forces(const double mean,
                                               const double largest) const
 {
+  if (largest == 0.)
+    return {};
+  const double carried = mean_joint_force();
+  return {mean / carried, largest / carried,
+          element_strength_ > 0. ? largest / element_strength_ : 0.};
+}
+
+double GrainBalance::mean_joint_force() const
+{
   double carried = 0.;
   for (const discrete::JointForce &force : state_.joints.force)
     carried += std::sqrt(force.x * force.x + force.y * force.y); // hypot is slow
-  carried /= static_cast<double>(state_.joints.size());
-  if (largest == 0.)
-    return {};
-  return {mean / carried, largest / carried,
-          element_strength_ > 0. ? largest / element_strength_ : 0.};
+  return carried / static_cast<double>(state_.joints.size());
+}
+
+double GrainBalance::allowed_force(const BalanceRatios &limits) const
+{
+  const double by_joints = limits.largest * mean_joint_force();
+  return element_strength_ > 0.
+             ? std::min(by_joints, limits.of_strength * element_strength_)
+             : by_joints;
+}
+
+void GrainBalance::add_outer_forces_on(const Grains &,
+                                       const std::vector<std::int32_t> &,
+                                       const std::size_t,
+                                       Eigen::VectorXd &) const
+{
 }
 
 double GrainBalance::conjugate_force() const
@@ -215,11 +263,7 @@ void GrainBalance::move(const Eigen::VectorXd &increment)
 
 double GrainBalance::load_work(const Eigen::VectorXd &increment) const
 {
-  double work = 0.;
-  for (const GrainLoad &load : loads_)
-    work += increment.segment<3>(index(load.grain, 0))
-                .dot(Eigen::Vector3d(load.force.x, load.force.y, load.torque));
-  return work;
+  return loads_.empty() ? 0. : dead_loads_.dot(increment);
 }
 
 double GrainBalance::load_potential() const
@@ -236,6 +280,8 @@ double GrainBalance::load_potential() const
 double GrainBalance::allowed_share(const Eigen::VectorXd &correction,
                                    const double cap) const
 {
+  if (most_deformation_ * correction.cwiseProduct(levers_).cwiseAbs().maxCoeff() <= cap)
+    return 1.;
   const Joints &joints = state_.joints;
   double worst = 0.; // deformation over sigma_b / k_n
   for (const discrete::JointGroup &group : joints.groups)

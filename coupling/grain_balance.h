@@ -28,6 +28,8 @@ struct BalanceRatios
   }
 };
 
+class GrainBalance;
+
 /// What a quasi-static driver needs of a body: the exact unbalanced force at the
 /// present state, and a symmetric elastic operator, no softer than the body, to correct
 /// it with. The vectors have an entry for each of its unknowns, prescribed ones
@@ -61,6 +63,9 @@ public:
   virtual const Eigen::VectorXd &levers() const = 0;
   /// Add what is stored beside the joints and the walls' contacts: in a mesh.
   virtual void add_energies(Energies &) const {}
+  /// The same body where it is nothing but grains, parts of which can be balanced apart;
+  /// null otherwise.
+  virtual GrainBalance *grains_alone() { return nullptr; }
 };
 
 /// A prescribed displacement (component 0, 1) or rotation (2) of a grain.
@@ -108,6 +113,7 @@ public:
   double load_work(const Eigen::VectorXd &increment) const override;
   double allowed_share(const Eigen::VectorXd &correction, double cap) const override;
   const Eigen::VectorXd &levers() const override { return levers_; }
+  GrainBalance *grains_alone() override { return this; }
 
   /// Forces of joints and loads at the present displacements, into the grains; what
   /// acts on prescribed components is taken off them: it is the supports'. \param
@@ -125,6 +131,23 @@ public:
   {
     return prescribed_[unknown] > 0.;
   }
+  // Of a part of the body that is balanced apart (LocalMoves):
+  /// The operator, lower triangle; identity where motion is prescribed.
+  const Eigen::SparseMatrix<double> &matrix() const { return matrix_; }
+  /// 1 where motion is prescribed, else 0.
+  const Eigen::VectorXd &prescribed() const { return prescribed_; }
+  /// Constant loads by unknowns [N], [N m].
+  const Eigen::VectorXd &dead_loads() const { return dead_loads_; }
+  /// Unbalanced force at which the largest one reaches a limit, at the last residual()
+  /// [N].
+  double allowed_force(const BalanceRatios &limits) const;
+  /// Add to @p force, three entries a grain, what acts on the first @p n of @p grains
+  /// beside joints and constant loads. \param local number in @p grains of each grain of
+  /// the body, or -1
+  virtual void add_outer_forces_on(const discrete::Grains &grains,
+                                   const std::vector<std::int32_t> &local,
+                                   std::size_t n,
+                                   Eigen::VectorXd &force) const;
 
   GrainState &state() { return state_; }
   const GrainState &state() const { return state_; }
@@ -149,11 +172,16 @@ protected:
   Eigen::VectorXd rate_, residual_, support_;
 
 private:
+  double mean_joint_force() const; ///< kept at the last residual() [N]
+
   GrainState &state_;
   std::vector<GrainLoad> loads_;
   std::vector<OperatorSpring> operator_springs_;
   double element_strength_ = 0.; ///< mean, weighted; 0: nothing breaks [N]
-  Eigen::VectorXd levers_, tangent_;
+  /// Largest deformation of a joint over sigma_b / k_n for a displacement of 1 [1/m].
+  double most_deformation_ = 0.;
+  Eigen::VectorXd levers_, tangent_, dead_loads_;
+  Eigen::SparseMatrix<double> matrix_;
   std::optional<ElasticFactor> factor_;
 };
 } // namespace antiform::coupling

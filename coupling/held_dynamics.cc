@@ -30,7 +30,7 @@ double common_step(const Grains &grains, const discrete::StiffnessSums &sums)
 }
 
 HeldResult
-settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits)
+settle(GrainBalance &body, const HeldDynamics &settings, const RestGoal &goal)
 {
   Grains &grains = body.state().grains;
   discrete::Joints &joints = body.state().joints;
@@ -61,10 +61,10 @@ settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &li
     const discrete::GrainVelocities before =
         look ? discrete::velocities(grains) : discrete::GrainVelocities{};
     discrete::damped_kick(grains, dt, damping);
-    BalanceRatios allowed = limits;
+    BalanceRatios allowed = goal;
     if (result.steps > settings.patience)
-      allowed.mean = std::max(limits.mean, settings.collapsed);
-    if (look && ratios.within(allowed))
+      allowed.mean = std::max(goal.mean, settings.collapsed);
+    if (look && (ratios.within(allowed) || body.conjugate_force() < goal.least_force))
     {
       result.dissipated = discrete::kinetic_energy(grains, before);
       break;
@@ -72,7 +72,7 @@ settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &li
     if (result.steps >= settings.most_steps)
       throw NumericalError("held dynamics",
                            "the body does not come to rest under held supports",
-                           ratios.mean, limits.mean, static_cast<long>(result.steps));
+                           ratios.mean, goal.mean, static_cast<long>(result.steps));
     discrete::drift(grains, dt);
     ++result.steps;
   }

@@ -3,6 +3,7 @@
 #include "coupling/grain_balance.h"
 
 #include <cstdint>
+#include <limits>
 
 namespace antiform::coupling
 {
@@ -19,6 +20,17 @@ struct HeldDynamics
   double collapsed = 1e-3;
 };
 
+/// Where explicit motion ends: in balance within the limits, or with a load parameter's
+/// conjugate force [J] that has fallen below a least one, at which the run ends anyway.
+struct RestGoal : BalanceRatios
+{
+  RestGoal(const BalanceRatios &limits) // NOLINT: limits alone are a goal
+      : BalanceRatios(limits)
+  {
+  }
+  double least_force = -std::numeric_limits<double>::infinity();
+};
+
 /// What came of it.
 struct HeldResult
 {
@@ -31,10 +43,10 @@ struct HeldResult
 double common_step(const discrete::Grains &grains, const discrete::StiffnessSums &sums);
 
 /// Let the grains go from rest, prescribed components held, bonds breaking, until the
-/// body is in balance within the limits; stop them there. Densities are scaled so that
+/// goal is reached; stop them there. Densities are scaled so that
 /// every grain has the same stable step, and put back afterwards. Cracks go to the
 /// state; their step and time are those of this motion, in units in which the stiffest
 /// grain's own period is of order 1. Throws NumericalError after the most steps.
 HeldResult
-settle(GrainBalance &body, const HeldDynamics &settings, const BalanceRatios &limits);
+settle(GrainBalance &body, const HeldDynamics &settings, const RestGoal &goal);
 } // namespace antiform::coupling

@@ -137,6 +137,23 @@ void WalledGrains::add_outer_forces()
   }
 }
 
+void WalledGrains::add_outer_forces_on(const Grains &grains,
+                                       const std::vector<std::int32_t> &local,
+                                       const std::size_t n,
+                                       Eigen::VectorXd &force) const
+{
+  for (const BearingWall &bearing : walls_)
+    for (WallContact contact : bearing.wall->contacts)
+    {
+      contact.grain = local[contact.grain];
+      if (contact.grain < 0 || contact.grain >= static_cast<std::int32_t>(n))
+        continue;
+      const double push = wall_force(*bearing.wall, contact, grains);
+      force[3 * contact.grain] += push * bearing.wall->normal.x;
+      force[3 * contact.grain + 1] += push * bearing.wall->normal.y;
+    }
+}
+
 const Eigen::VectorXd &WalledGrains::residual()
 {
   GrainBalance::residual();
@@ -183,7 +200,7 @@ std::vector<double> WalledGrains::ground_stiffness() const
   return sum;
 }
 
-HeldResult WalledGrains::settle(const HeldDynamics &settings, const BalanceRatios &limits)
+HeldResult WalledGrains::settle(const HeldDynamics &settings, const RestGoal &goal)
 {
   double before = 0., after = 0.; // work of the walls' loads since their start [J]
   for (const BearingWall &bearing : walls_)
@@ -201,7 +218,7 @@ HeldResult WalledGrains::settle(const HeldDynamics &settings, const BalanceRatio
               (wall_energy(state().grains, wall) - energy);
     }
   walls_follow_ = true;
-  HeldResult result = coupling::settle(*this, settings, limits);
+  HeldResult result = coupling::settle(*this, settings, goal);
   walls_follow_ = false;
   result.dissipated += lost;
   for (const BearingWall &bearing : walls_)

@@ -41,6 +41,10 @@ public:
   void move(const Eigen::VectorXd &increment) override;
   double load_work(const Eigen::VectorXd &increment) const override;
   std::vector<double> ground_stiffness() const override;
+  void add_outer_forces_on(const discrete::Grains &grains,
+                           const std::vector<std::int32_t> &local,
+                           std::size_t n,
+                           Eigen::VectorXd &force) const override;
 
   /// To be followed by assemble_walls() where walls are held or let go.
   std::vector<BearingWall> &walls() { return walls_; }
@@ -55,7 +59,7 @@ public:
   void visit_state(StateArchive &archive);
 
   /// Explicit motion from rest, as settle() of bare grains; free walls without mass.
-  HeldResult settle(const HeldDynamics &settings, const BalanceRatios &limits);
+  HeldResult settle(const HeldDynamics &settings, const RestGoal &goal);
 
   /// Called at each evaluation of the forces; may throw, and the body is lost then.
   std::function<void()> on_evaluation;

@@ -1,7 +1,8 @@
 // Loading from event to event beside explicit loading at 300 wave transits to the same
 // peak: seconds of one core, to the peak and through a stress drop of 10 %. Specimens of
 // about 1000, 4000 and 15000 grains, one after the other in one run, each with both.
-// Arguments: first and last seed (1 1), largest number of grains (15000).
+// Arguments: first and last seed (1 1), least and largest number of grains (0 20000), then
+// settings of the driver as name=value, to see what they are worth.
 #include "support/slow_loading.h"
 #include "support/specimen_fixture.h"
 
@@ -9,6 +10,8 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <string>
 
 using namespace antiform::coupling;
 using namespace antiform::coupling::test;
@@ -23,12 +26,44 @@ struct Ascent
   double peak_seconds = 0., seconds = 0.;
 };
 
-Ascent climb(Specimen &specimen)
+/// Set what "name=value" says; false where there is no such setting.
+bool set(DriverSettings &settings, const std::string &text)
+{
+  const std::string name = text.substr(0, text.find('='));
+  const double value = std::atof(text.substr(text.find('=') + 1).c_str());
+  const std::map<std::string, double *> reals{
+      {"mean", &settings.limits.mean},
+      {"largest", &settings.limits.largest},
+      {"of_strength", &settings.limits.of_strength},
+      {"largest_step", &settings.largest_step},
+      {"exclusion", &settings.exclusion},
+      {"radius", &settings.local.radius},
+      {"core", &settings.local.core},
+      {"share", &settings.local.share},
+      {"most_breaks", &settings.most_breaks},
+      {"before_peak", &settings.settled_before_peak},
+      {"after_peak", &settings.settled_after_peak},
+      {"damping", &settings.dynamics.damping}};
+  const std::map<std::string, int *> numbers{
+      {"events", &settings.events_per_step},
+      {"most_corrections", &settings.most_corrections},
+      {"accelerate_after", &settings.accelerate_after},
+      {"local_corrections", &settings.local.most_corrections},
+      {"local_breaks", &settings.local.most_breaks}};
+  if (const auto real = reals.find(name); real != reals.end())
+    *real->second = value;
+  else if (const auto number = numbers.find(name); number != numbers.end())
+    *number->second = static_cast<int>(value);
+  else
+    return false;
+  return true;
+}
+
+Ascent climb(Specimen &specimen, const DriverSettings &settings)
 {
   Ascent ascent;
   const double start = processor_seconds();
   GrainBalance body(specimen.state, specimen.platens);
-  const DriverSettings settings;
   EventDriver driver(body, settings);
   while (true)
   {
@@ -50,16 +85,17 @@ Ascent climb(Specimen &specimen)
 
 void print(const char *what, const DriverReport &report, const double seconds)
 {
-  std::printf("  driver to the %-9s %4ld load steps %6ld batches %6ld breaks %6ld solves "
-              "%6ld evaluations %2ld hand-overs %7ld steps %7.2f s\n",
-              what, report.load_steps, report.batches, report.breaks, report.solves,
-              report.evaluations, report.hand_overs, report.explicit_steps, seconds);
+  std::printf("  driver to the %-9s %4ld load steps %6ld batches %6ld breaks %6ld patches "
+              "%6ld local solves %6ld solves %6ld evaluations %2ld hand-overs %7ld steps "
+              "%7.2f s\n",
+              what, report.load_steps, report.batches, report.breaks, report.local_moves,
+              report.local_corrections, report.solves, report.evaluations, report.hand_overs, report.explicit_steps, seconds);
 }
 
-void compare(const double width, const std::uint64_t seed)
+void compare(const double width, const std::uint64_t seed, const DriverSettings &settings)
 {
   Specimen one(width, seed), other(width, seed);
-  const Ascent driver = climb(one);
+  const Ascent driver = climb(one, settings);
   const SlowLoading slow = slow_loading(other, 300., driver.peak.load, 0.1);
   std::printf("%zu grains, %zu joints, seed %lu\n", one.n_grains(),
               one.state.joints.size(), seed);
@@ -80,11 +116,19 @@ int main(const int argc, char **argv)
 {
   const int first = argc > 1 ? std::atoi(argv[1]) : 1,
             last = argc > 2 ? std::atoi(argv[2]) : first,
-            most = argc > 3 ? std::atoi(argv[3]) : 15000;
+            least = argc > 3 ? std::atoi(argv[3]) : 0,
+            most = argc > 4 ? std::atoi(argv[4]) : 20000;
+  DriverSettings settings;
+  for (int k = 5; k < argc; ++k)
+    if (!set(settings, argv[k]))
+    {
+      std::fprintf(stderr, "no setting '%s'\n", argv[k]);
+      return 1;
+    }
   std::printf("kernel %s\n", antiform::discrete::joint_kernel_level().c_str());
   for (int seed = first; seed <= last; ++seed)
     for (const double width : {22., 44.5, 84.6})
-      if (2.1 * width * width < 1.1 * most)
-        compare(width, static_cast<std::uint64_t>(seed));
+      if (const double n = 2.1 * width * width; n > least && n < most)
+        compare(width, static_cast<std::uint64_t>(seed), settings);
   return 0;
 }

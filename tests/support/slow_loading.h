@@ -2,12 +2,14 @@
 // The reference of the quasi-static driver: explicit damped motion at a constant rate.
 #include "support/specimen_fixture.h"
 
+#include "coupling/event_driver.h"
 #include "discrete/integrate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <ctime>
+#include <vector>
 
 namespace antiform::coupling::test
 {
@@ -30,19 +32,22 @@ struct SlowLoading
 /// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave along
 /// its height for a shortening of @p strain. It ends when the stress is @p stop_drop below
 /// the largest so far, 0: at @p strain. Densities are scaled; damping is combined, 0.7, so
-/// that the drift does not rub.
+/// that the drift does not rub. Constant loads are in balance before.
 inline SlowLoading slow_loading(Specimen &specimen,
                                 const double transits,
                                 const double strain,
-                                const double stop_drop = 0.)
+                                const double stop_drop = 0.,
+                                const std::vector<GrainLoad> &loads = {})
 {
-  GrainBalance body(specimen.state, specimen.platens);
+  GrainBalance body(specimen.state, specimen.platens, loads);
   discrete::Grains &grains = specimen.state.grains;
   const discrete::Joints &joints = specimen.state.joints;
+  EventDriver(body, {}).run_to(0.);
   // Modulus by the elastic tangent.
+  const double before = body.conjugate_force();
   body.move(1e-6 * body.tangent());
   body.residual();
-  const double modulus = specimen.stress(body.conjugate_force()) / 1e-6;
+  const double modulus = specimen.stress(body.conjugate_force() - before) / 1e-6;
   body.move(-1e-6 * body.tangent());
 
   discrete::scale_density(grains, discrete::stiffness_sums(grains, joints, false), {},
@@ -83,10 +88,5 @@ inline SlowLoading slow_loading(Specimen &specimen,
   }
   result.seconds = processor_seconds() - start;
   return result;
-}
-
-inline double slow_peak(Specimen &specimen, const double transits, const double strain)
-{
-  return slow_loading(specimen, transits, strain).peak;
 }
 } // namespace antiform::coupling::test

@@ -75,4 +75,21 @@ private:
     }
   }
 };
+
+/// Pressure on both sides as forces on the grains there [N per grain].
+inline std::vector<GrainLoad> side_loads(const Specimen &specimen, const double force)
+{
+  const discrete::Grains &grains = specimen.state.grains;
+  std::vector<GrainLoad> loads;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+  {
+    const auto number = static_cast<std::int32_t>(i);
+    const double x = grains.reference_x[i], r = grains.radius[i];
+    if (x - r < 0.1)
+      loads.push_back({number, {force, 0.}, 0.});
+    else if (x + r > specimen.width - 0.1)
+      loads.push_back({number, {-force, 0.}, 0.});
+  }
+  return loads;
+}
 } // namespace antiform::coupling::test

@@ -164,7 +164,7 @@ TEST(WalledGrains, SettleWhereTheyBalance)
 
   WalledGrains other(settling.specimen.state, settling.bearing(true, load),
                      settling.held());
-  const HeldResult result = other.settle({}, {1e-7, 1e-5, 1e-5});
+  const HeldResult result = other.settle({}, BalanceRatios{1e-7, 1e-5, 1e-5});
   EXPECT_GT(result.steps, 100);
   double scale = 0.;
   for (const double u : one.state().grains.displacement_x)
@@ -193,7 +193,7 @@ TEST(WalledGrains, FreeWallsFollowGrainsThatHaveDrawnBack)
   WalledGrains body(walled.specimen.state, walled.bearing(true, load), walled.held());
   for (const int w : {2, 3})
     walled.walls[w].displacement = -0.3; // out of reach
-  body.settle({}, {1e-6, 1e-4, 1e-4});
+  body.settle({}, BalanceRatios{1e-6, 1e-4, 1e-4});
   for (const int w : {2, 3})
     EXPECT_NEAR(walled.walls[w].reaction / load, 1., 1e-9);
 }
