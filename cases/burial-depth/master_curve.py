@@ -1,18 +1,17 @@
 #!/usr/bin/python3
 """One curve for every burial depth: critical stress of a layer under a cover.
 
-    /usr/bin/python3 cases/burial-depth/master_curve.py ANTIFORM DIRECTORY [--jobs N]
+    antiform study cases/burial-depth/study-contrasts.prm -o DIRECTORY
+    /usr/bin/python3 cases/burial-depth/master_curve.py DIRECTORY
 
-Buckling runs of buckling.prm over covers H/h and stiffness contrasts, each in a section
-of eight half waves and three wavelengths of base; makes what is not in DIRECTORY yet, then
-writes master_curve.csv (a line a run), master_curve.md and master_curve.svg/.png, theory
-and computation in one picture. 24 runs took 2 minutes on two cores.
+Draws the layers of that study that slide in their matrix, theory and computation in one
+picture: writes master_curve.md (a line a run) and master_curve.svg/.png.
 """
+import argparse
 import csv
 import json
 import math
 import os
-import subprocess
 import sys
 
 import matplotlib
@@ -22,53 +21,41 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
-from study_runs import arguments_of, rows_of, run, save, write_table  # noqa: E402
+from study_runs import save  # noqa: E402
 
-DECK = os.path.join(HERE, "buckling.prm")
 CURVE = os.path.join(HERE, "..", "..", "tests", "data", "cover_master_curve.csv")
-COVERS = [0.01, 1., 3., 10., 14., 20., 30., 100.]
 CONTRASTS = [1e3, 1e4, 1e5]
 COLOURS = {1e3: "#c0392b", 1e4: "#1f4fa8", 1e5: "#2e8b57"}
 MARKERS = {1e3: "^", 1e4: "o", 1e5: "s"}
+THICKNESS = 10.
+MODULUS = 56e9 / (1. - 0.25 ** 2)  # E' of the deck
 
 
-def closed_form(antiform, entries):
-    """Stress [Pa] and wavelength [m] of the cover on a half-space."""
-    command = [antiform, "theory", DECK, "--json"]
-    for name, value in entries.items():
-        command += ["--set", f"{name}={value}"]
-    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    state = json.loads(text)["critical"]["cover_on_half_space_smooth"]
-    return state["critical_stress"]["value"], state["wavelength"]["value"]
-
-
-def one(antiform, directory, contrast, cover):
-    """A line of the table; None where the run failed."""
-    entries = {"Matrix/Stiffness contrast": contrast, "Matrix/Burial depth ratio": cover,
-               "Matrix/Cover rows": 1 if cover < 0.25 else 0}
-    stress, wavelength = closed_form(antiform, entries)
-    h = 10.
-    # Even cells measured in quarters of h: 16 columns a wavelength, far rows of a tenth.
-    entries |= {"Layer/Length ratio": 4. * wavelength / h,
-                "Matrix/Cell size ratio": 1, "Matrix/Refinement rounds": 0,
-                "Matrix/Base depth ratio": 3. * wavelength / h,
-                "Matrix/Cell aspect ratio": max(1., 4. * wavelength / h / 16.),
-                "Matrix/Largest cell ratio": max(1., 4. * wavelength / h / 10.),
-                "Title": f"E/E0 = {contrast:g} H/h = {cover:g}"}
-    name = f"contrast-{contrast:g}-cover-{cover:g}"
-    summary = run(antiform, os.path.join(directory, name), DECK, entries)
-    if summary is None:
-        return None
-    found = {k: v["value"] for k, v in summary["results"].items()}
-    E = 56e9 / (1. - 0.25 ** 2)
-    E0 = E / contrast
-    return {"contrast": contrast, "cover_ratio": cover,
-            "theta": cover * (E0 / E) ** (1. / 3.),
-            "F": found["critical_stress"] / (E * E0 * E0) ** (1. / 3.),
-            "F_theory": stress / (E * E0 * E0) ** (1. / 3.),
-            "wave": found["dominant_wavelength"] / h * (E0 / E) ** (1. / 3.),
-            "wave_theory": wavelength / h * (E0 / E) ** (1. / 3.),
-            "dofs": summary["sizes"]["dofs"], "seconds": summary["wall_seconds"]}
+def rows_of(directory):
+    """A line a member that slides: contrast, H/h, Theta, F, wavelength, with theory."""
+    path = os.path.join(directory, "study.json")
+    if not os.path.exists(path):
+        sys.exit(f"master_curve.py: there is no '{path}'. Make it with 'antiform study "
+                 f"cases/burial-depth/study-contrasts.prm -o {directory}'.")
+    with open(path) as file:
+        members = json.load(file)["members"]
+    rows = []
+    for member in members:
+        values, found = member["values"], member["figures"]
+        if values["interface"] != "sliding" or member["status"] != "completed":
+            continue
+        contrast, cover = (float(values[name]) for name in ("stiffness_contrast",
+                                                            "burial_depth_ratio"))
+        # Stress and length that all contrasts have in common.
+        stress = (MODULUS * (MODULUS / contrast) ** 2) ** (1. / 3.)
+        length = THICKNESS * contrast ** (1. / 3.)
+        rows.append({"contrast": contrast, "cover_ratio": cover,
+                     "theta": cover * contrast ** (-1. / 3.),
+                     "F": found["critical_stress_Pa"] / stress,
+                     "F_theory": found["theory_stress_Pa"] / stress,
+                     "wave": found["dominant_wavelength_m"] / length,
+                     "wave_theory": found["theory_wavelength_m"] / length})
+    return rows
 
 
 def theory_curve():
@@ -124,15 +111,14 @@ def draw(rows, directory):
 
 
 def report(rows, directory):
-    lines = ["| E/E0 | H/h | Theta | F | closed form | | wave | closed form | | dofs | s |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["| E/E0 | H/h | Theta | F | closed form | | wave | closed form | |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for r in rows:
         lines.append(
             f"| {r['contrast']:g} | {r['cover_ratio']:g} | {r['theta']:.4f} | {r['F']:.4f}"
             f" | {r['F_theory']:.4f} | {100 * (r['F'] / r['F_theory'] - 1):+.2f} %"
             f" | {r['wave']:.3f} | {r['wave_theory']:.3f}"
-            f" | {100 * (r['wave'] / r['wave_theory'] - 1):+.2f} %"
-            f" | {r['dofs']:.0f} | {r['seconds']:.1f} |")
+            f" | {100 * (r['wave'] / r['wave_theory'] - 1):+.2f} % |")
     text = "\n".join(lines) + "\n"
     with open(os.path.join(directory, "master_curve.md"), "w") as file:
         file.write(text)
@@ -140,13 +126,12 @@ def report(rows, directory):
 
 
 def main():
-    arguments = arguments_of(__doc__)
-    keys = [(contrast, cover) for contrast in CONTRASTS for cover in COVERS]
-    rows = rows_of(lambda *key: one(arguments.antiform, arguments.directory, *key), keys,
-                   arguments.jobs)
-    write_table(rows, os.path.join(arguments.directory, "master_curve.csv"))
-    report(rows, arguments.directory)
-    draw(rows, arguments.directory)
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("directory", help="of the study; for the picture too")
+    directory = parser.parse_args().directory
+    rows = rows_of(directory)
+    report(rows, directory)
+    draw(rows, directory)
 
 
 if __name__ == "__main__":
