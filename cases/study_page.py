@@ -51,6 +51,11 @@ def words(name):
     return name.replace("_", " ").replace("/", " ")
 
 
+def kind_of(name):
+    """The last word: stress, wavelength."""
+    return words(name).split()[-1]
+
+
 class Study:
     """study.json, and which of its entries is the axis and which tell curves apart."""
 
@@ -97,7 +102,7 @@ class Study:
 
     def panels(self):
         """Figures to draw, each with its closed form or None, and what 'antiform theory'
-        says in the same unit."""
+        says of its kind: a stress beside a stress."""
         figures = self.record["collect"]
         theory = {f["name"][len("theory_"):]: f for f in figures
                   if f["name"].startswith("theory_")}
@@ -107,7 +112,7 @@ class Study:
             if not name.startswith(("theory_", "theory/")) and " over theory" not in name:
                 yield (figure, next((theory[end] for end in theory
                                      if name.endswith("_" + end)), None),
-                       [f for f in said if f["unit"] == figure["unit"] != "s"])
+                       [f for f in said if kind_of(f["name"]) == kind_of(name)])
 
 
 def draw(study):
