@@ -114,8 +114,8 @@ struct Driven
       , driver(
             layer.model.state,
             body,
-            [this, dynamics = settings.dynamics](const BalanceRatios &limits)
-            { return body.settle(dynamics, limits); },
+            [this, dynamics = settings.dynamics](const RestGoal &goal)
+            { return body.settle(dynamics, goal); },
             settings)
   {
   }
@@ -392,7 +392,7 @@ TEST(BridgedBalance, SettlesWhereItBalances)
   push *= 1e-3 / push.cwiseProduct(body.levers()).cwiseAbs().maxCoeff();
   body.move(push);
   const double before = stored();
-  const HeldResult result = body.settle({}, {1e-8, 1e-6, 1e-6});
+  const HeldResult result = body.settle({}, BalanceRatios{1e-8, 1e-6, 1e-6});
   EXPECT_GT(result.steps, 100);
   EXPECT_LT(difference(place_of(body, layer), balance), 1e-5);
   EXPECT_NEAR(result.dissipated / (before - stored()), 1., 1e-3);
