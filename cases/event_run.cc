@@ -28,6 +28,7 @@ SteppedRun::Pause EventRun::advance()
         if (log_.is_due())
           report_progress();
       });
+  const bool was_unstable = scene_->events->unstable_from().has_value();
   try
   {
     scene_->simulation->step();
@@ -43,6 +44,9 @@ SteppedRun::Pause EventRun::advance()
     throw;
   }
   has_recorded_ = true;
+  if (const auto load = scene_->events->unstable_from(); load && !was_unstable)
+    log_.line("the balance has become unstable, with the walls held, by a shortening of " +
+              coupling::shortest_text(*load));
   return Pause::none;
 }
 

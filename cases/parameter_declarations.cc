@@ -167,7 +167,7 @@ void declare(WallsParameters &walls, Declarations &entries)
                  "advance by load steps, each in one transit, and stand still after "
                  "each until the forces balance; event driver: no time at all, from the "
                  "balance at one event (bonds that break) to that at the next few, for "
-                 "flat joints of grains alone.",
+                 "flat joints of grains, alone or joined to a mesh.",
                  "constant rate|step and relax|event driver");
   entries.number("Load step", walls.load_step,
                  "Step and relax: shortening in one load step; some 2 % of that at the "

@@ -18,6 +18,9 @@ constexpr double longest_settling = 8000.;
 /// Those after which it is a collapse: 100 transits.
 constexpr double patience_of_settling = 400.;
 
+/// Load steps between two looks at a layer's stability: one costs about ten solves.
+constexpr std::int64_t stability_interval = 10;
+
 /// Frictionless ends leave the section free to move along them: one grain at an end, near
 /// the layer's axis, is kept from it. Nothing pushes it that way in balance.
 std::int32_t guided_grain(const Scene &scene)
@@ -94,6 +97,7 @@ void add_event_loading(Scene &scene)
   options.length = scene.geometry.length() - grips;
   options.reach = 0.5 * scene.geometry.diameter();
   options.modulus = scene.grains->modulus;
+  options.stability_interval = p.is_specimen() ? 0 : stability_interval;
   scene.events = &scene.simulation->add(
       std::make_unique<EventLoading>(scene.grains->state, scene.walls, scene.side_walls,
                                      held_motions(scene, options.length),
@@ -125,6 +129,8 @@ void report_events(const Scene &scene, Summary &summary)
   results["worst_mean_unbalanced"] = {worst.mean, "-"};
   results["worst_largest_unbalanced"] = {worst.largest, "-"};
   results["worst_unbalanced_over_strength"] = {worst.of_strength, "-"};
+  if (const auto load = scene.events->unstable_from())
+    results["unstable_from_shortening"] = {*load, "-"};
   summary.solves = report.solves;
 }
 } // namespace antiform::cases

@@ -1,5 +1,7 @@
 #include "coupling/event_loading.h"
 
+#include "continuum/errors.h"
+#include "coupling/present_stability.h"
 #include "coupling/specimen_components.h"
 
 #include <algorithm>
@@ -21,6 +23,8 @@ EventLoading::EventLoading(GrainState &state,
                            BridgingDomain *const domain,
                            const Options &options)
     : state_(state)
+    , mesh_(mesh)
+    , domain_(domain)
     , ends_(ends)
     , sides_(sides)
     , options_(options)
@@ -83,6 +87,24 @@ void EventLoading::run(const Stage, const Clock &clock)
     state_.cracks[k].step = static_cast<std::uint64_t>(clock.step);
     state_.cracks[k].time = clock.time;
   }
+  look_at_stability();
+}
+
+void EventLoading::look_at_stability()
+{
+  const std::int64_t steps = driver_->report().load_steps;
+  if (options_.stability_interval == 0 || steps % options_.stability_interval != 0 ||
+      unstable_from_)
+    return;
+  try
+  {
+    if (n_unstable_directions(grains(), mesh_, domain_) > 0)
+      unstable_from_ = driver_->load();
+  }
+  catch (const NumericalError &)
+  {
+    // Singular to round-off: neither the one nor the other; the next look will tell.
+  }
 }
 
 void EventLoading::load_next()
@@ -142,6 +164,10 @@ void EventLoading::visit_state(StateArchive &archive)
   archive.value("event_loading/worst_largest", worst_.largest);
   archive.value("event_loading/worst_of_strength", worst_.of_strength);
   has_begun_ = has_begun != 0;
+  double unstable_from = unstable_from_.value_or(-1.);
+  archive.value("event_loading/unstable_from", unstable_from);
+  if (unstable_from >= 0.)
+    unstable_from_ = unstable_from;
   if (archive.is_loading() && pressure_steps_ > 0)
   {
     const bool stands = pressure_steps_ > n_pressure_steps;

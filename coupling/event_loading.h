@@ -29,6 +29,8 @@ public:
     double length = 0.;          ///< of a side, and that for a shortening of 1 [m]
     double reach = 0.;           ///< of the walls' search for contacts [m]
     std::vector<double> modulus; ///< E* by region [Pa]
+    /// Load steps between two looks at the stability of the balance; 0: none.
+    std::int64_t stability_interval = 0;
   };
 
   /// \param ends   walls that shorten the section, or none; referred to, as the sides are
@@ -56,6 +58,9 @@ public:
   /// Largest of all records.
   const BalanceRatios &worst_ratios() const { return worst_; }
   const DriverReport &report() const { return driver_->report(); }
+  /// Load at which the balance was first found to be unstable with its walls held
+  /// (n_unstable_directions()); later than it happened by up to the interval.
+  std::optional<double> unstable_from() const { return unstable_from_; }
   /// For what an end carries.
   Walls &walls() { return walls_; }
   /// Called at each evaluation of the forces; may throw to give up the load step at hand.
@@ -71,8 +76,11 @@ private:
   WalledGrains &grains() { return alone_ ? *alone_ : bridged_->grains(); }
   void load_next();
   void press();
+  void look_at_stability();
 
   GrainState &state_;
+  MeshState *mesh_;
+  BridgingDomain *domain_;
   std::vector<discrete::Wall> &ends_, &sides_;
   Options options_;
   std::optional<WalledGrains> alone_;     ///< without a mesh
@@ -87,5 +95,6 @@ private:
   std::int64_t pressure_steps_ = 0; ///< done
   bool has_begun_ = false;          ///< the body without load has been recorded
   BalanceRatios worst_;
+  std::optional<double> unstable_from_;
 };
 } // namespace antiform::coupling

@@ -21,7 +21,8 @@ struct CoupledShape
   double cell = 2.;
   double contrast = 20.; ///< of the moduli of layer and matrix
   std::uint64_t seed = 1;
-  bool finite_strain = false; ///< of the mesh
+  bool finite_strain = false;  ///< of the mesh
+  std::int32_t tied_every = 0; ///< that many-th grain of the overlap follows the mesh
 };
 
 struct CoupledLayer
@@ -111,7 +112,14 @@ private:
         c /= shape.contrast;
     material.density = 2600. * tile.density_factor;
     model.finite_strain = shape.finite_strain;
-    model.tie_unsupported = true;
+    model.tie_unsupported = shape.tied_every == 0;
+    const discrete::Grains &grains = model.state.grains;
+    for (std::int32_t i = 0;
+         !model.tie_unsupported && i < static_cast<int>(grains.size());
+         i += shape.tied_every)
+      if (const double d = model.weight.distance_to_core(grains.reference(i));
+          d > 0. && d <= shape.overlap)
+        model.options.tied_grains.push_back(i);
     model.join_bonded(material, shape.cell * shape.cell);
     for (discrete::Wall &wall : model.walls)
       for (discrete::WallContact &contact : wall.contacts)

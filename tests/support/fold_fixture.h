@@ -71,6 +71,11 @@ public:
   const std::vector<FoldState> &history() const { return history_; }
   std::size_t n_grains() const { return model_.state.grains.size(); }
   std::size_t n_mesh_dofs() const { return model_.solid ? model_.n_mesh_dofs() : 0; }
+  Bridged &model() { return model_; }
+  /// Grains with their centre on a wall, which do not turn.
+  const std::vector<std::int32_t> &on_plane() const { return on_plane_; }
+  /// Amplitude and dip as the grains are now; nothing else.
+  FoldState shape_now() const;
   /// Largest rotation of a cell [degrees]; of the mesh of finite strain.
   double largest_mesh_rotation() const;
 
@@ -269,11 +274,10 @@ inline void Fold::make_loop()
                            { return clock.step % sample_interval_ == 0; });
 }
 
-inline FoldState Fold::look() const
+inline FoldState Fold::shape_now() const
 {
   const discrete::Grains &g = model_.state.grains;
   FoldState state;
-  state.shortening = walls_->closure() / shape_.length;
   double product = 0., square = 0., height = 0., cosine = 0., n = 0.;
   std::vector<double> rotation(shape_.length / 4 + 1, 0.), count(rotation.size(), 0.);
   for (std::size_t i = 0; i < g.size(); ++i)
@@ -297,6 +301,13 @@ inline FoldState Fold::look() const
   for (std::size_t bin = 0; bin < rotation.size(); ++bin)
     if (count[bin] > 0.)
       state.dip = std::max(state.dip, std::abs(rotation[bin] / count[bin]) * 180. / M_PI);
+  return state;
+}
+
+inline FoldState Fold::look() const
+{
+  FoldState state = shape_now();
+  state.shortening = walls_->closure() / shape_.length;
   state.force = walls_->grain_reaction(0) + walls_->grain_reaction(1) +
                 (model_.mesh ? walls_->mesh_reaction() : 0.);
   const Energies e = simulation_->energies();

@@ -25,8 +25,9 @@ nlohmann::json run_deck(const std::string &directory,
 
 /// Every line of the history is a balance of the constrained forces, grains and mesh have
 /// not parted, and the ledger is closed.
-void expect_balances(const std::string &directory, const double tolerance = 1e-3)
+void expect_balances(const std::string &directory, const double closure = 1e-3)
 {
+  constexpr double tolerance = 1e-3;
   const CsvTable history(directory + "/history.csv");
   const auto mean = history.column("unbalanced_ratio"),
              largest = history.column("largest_unbalanced_ratio"),
@@ -40,8 +41,12 @@ void expect_balances(const std::string &directory, const double tolerance = 1e-3
     EXPECT_LT(of_strength[k], 150. * tolerance) << "line " << k;
     EXPECT_LT(gap[k], 1e-13) << "line " << k; // of displacements of 1e-2 m
   }
-  EXPECT_LT(summary_of(directory).at("energy").at("closure_error"), 1e-3);
+  EXPECT_LT(summary_of(directory).at("energy").at("closure_error"), closure);
 }
+
+/// The ledger's limit where a layer has come down in a few long sweeps: kinks of the law
+/// within a move are not those of a trapezoid.
+constexpr double after_collapse = 5e-3;
 } // namespace
 
 TEST(CoupledEventRun, BeginsToBreakAsSlowWallsDo)
@@ -78,7 +83,7 @@ TEST(CoupledEventRun, GoesThroughThePeakInBalance)
 {
   const TemporaryFolder folder;
   const auto summary = run_deck(folder.path("run"), {events});
-  expect_balances(folder.path("run"));
+  expect_balances(folder.path("run"), after_collapse);
   EXPECT_EQ(summary.at("status"), "completed");
   EXPECT_GT(result(summary, "crack_count"), 20.);
   EXPECT_GT(result(summary, "load_steps"), 20.);
@@ -88,6 +93,28 @@ TEST(CoupledEventRun, GoesThroughThePeakInBalance)
     EXPECT_GT(energy.at(term).get<double>(),
               5e-3 * energy.at("boundary_work").get<double>())
         << term;
+}
+
+// With the walls' displacement given, a bent layer is followed through its largest load
+// and down to less than half of it.
+TEST(CoupledEventRun, FollowsABentLayerThroughItsLargestLoad)
+{
+  const TemporaryFolder folder;
+  const std::string directory = folder.path("run");
+  const auto summary = run_deck(directory, {events, "Layer/Shape=cosine"});
+  expect_balances(directory, after_collapse);
+  EXPECT_EQ(summary.at("status"), "completed");
+  const CsvTable history(directory + "/history.csv");
+  const auto stress = history.column("axial_stress_Pa"),
+             shortening = history.column("shortening");
+  EXPECT_EQ(result(summary, "peak_stress"),
+            *std::max_element(stress.begin(), stress.end()));
+  EXPECT_LT(stress.back(), 0.5 * result(summary, "peak_stress"));
+  for (std::size_t k = 1; k < history.size(); ++k)
+  {
+    EXPECT_GT(shortening[k], shortening[k - 1]) << "line " << k;
+    EXPECT_LT(shortening[k] - shortening[k - 1], 4e-5 * (1. + 1e-6)) << "line " << k;
+  }
 }
 
 TEST(CoupledEventRun, GoesOnFromItsLastRecordToTheSameBits)

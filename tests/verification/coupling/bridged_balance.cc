@@ -67,9 +67,13 @@ Eigen::VectorXd noise(const Eigen::Index n, const std::uint64_t seed)
 }
 } // namespace
 
-TEST(BridgedBalance, TangentIsTheSaddlePointsSolution)
+namespace
 {
-  CoupledLayer layer{CoupledShape()};
+/// Of the tangent, from Trilinos' saddle point.
+double error_of_tangent(const CoupledShape &shape)
+{
+  CoupledLayer layer{shape};
+  EXPECT_EQ(layer.model.domain->ties().empty(), shape.tied_every == 0);
   const StaticSolution linear = unit_shortening(layer);
   const BridgedBalance body = body_of(layer);
   const auto n = static_cast<Eigen::Index>(layer.n_grains());
@@ -79,11 +83,19 @@ TEST(BridgedBalance, TangentIsTheSaddlePointsSolution)
   wanted.segment<2>(3 * n).setConstant(0.5 * layer.shape.length); // walls
   for (Eigen::Index k = 3 * n + 2; k < wanted.size(); ++k)
     wanted[k] = linear.mesh.begin()[k - 3 * n - 2];
-  const Eigen::VectorXd lengths = body.levers();
-  const double error =
-      difference(body.tangent().cwiseProduct(lengths), wanted.cwiseProduct(lengths));
+  const double error = difference(body.tangent().cwiseProduct(body.levers()),
+                                  wanted.cwiseProduct(body.levers()));
   std::printf("  difference %.1e\n", error);
-  EXPECT_LT(error, 1e-9);
+  return error;
+}
+} // namespace
+
+TEST(BridgedBalance, TangentIsTheSaddlePointsSolution)
+{
+  EXPECT_LT(error_of_tangent(CoupledShape()), 1e-9);
+  CoupledShape tied;
+  tied.tied_every = 40;
+  EXPECT_LT(error_of_tangent(tied), 1e-9);
 }
 
 TEST(BridgedBalance, OperatorIsSymmetricAndKeepsTheConstraint)
@@ -368,10 +380,12 @@ TEST(BridgedBalance, HandsOverToMotionThatKeepsTheConstraint)
     EXPECT_TRUE(record.ratios.within(settings.limits)) << record.load;
 }
 
-// From a push away from balance motion comes back to it, and what it has lost is booked.
-TEST(BridgedBalance, SettlesWhereItBalances)
+namespace
 {
-  CoupledLayer layer{CoupledShape(), unbreakable()};
+// From a push away from balance motion comes back to it, and what it has lost is booked.
+void expect_settles(const CoupledShape &shape)
+{
+  CoupledLayer layer{shape, unbreakable()};
   DriverSettings settings;
   settings.limits = {1e-10, 1e-8, 1e-8};
   Driven run(layer, settings);
@@ -396,6 +410,15 @@ TEST(BridgedBalance, SettlesWhereItBalances)
   EXPECT_GT(result.steps, 100);
   EXPECT_LT(difference(place_of(body, layer), balance), 1e-5);
   EXPECT_NEAR(result.dissipated / (before - stored()), 1., 1e-3);
+}
+} // namespace
+
+TEST(BridgedBalance, SettlesWhereItBalances)
+{
+  expect_settles(CoupledShape());
+  CoupledShape tied;
+  tied.tied_every = 40;
+  expect_settles(tied);
 }
 
 // A grain of the overlap on a support could not follow the mesh.
