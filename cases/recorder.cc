@@ -364,6 +364,7 @@ void Recorder::fill(Summary &summary) const
     results["collapses"] = {static_cast<double>(loading->n_collapses()), "-"};
   }
   report_fractures(scene_, summary);
+  report_surface(scene_, summary);
   summary.energy = {
       {"boundary_work", energies_.boundary_work},
       {"kinetic", energies_.kinetic},

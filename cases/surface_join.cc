@@ -2,8 +2,12 @@
 
 #include "cases/prestress.h"
 #include "cases/scene.h"
+#include "cases/summary.h"
 
 #include "continuum/section_mesh.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace antiform::cases
 {
@@ -96,5 +100,27 @@ std::unique_ptr<SurfaceJoin> make_surface_join(Scene &scene)
         std::make_unique<SurfaceContact>(std::move(interface), law, pressure));
   }
   return join;
+}
+
+void report_surface(const Scene &scene, Summary &summary)
+{
+  if (!scene.surface || scene.surface->contacts.empty())
+    return;
+  double all = 0., open = 0., slides = 0., slip = 0.;
+  for (const auto &contact : scene.surface->contacts)
+    for (std::size_t k = 0; k < contact->states().size(); ++k)
+    {
+      const SurfaceContact::State &state = contact->states()[k];
+      const double length = contact->interface().points()[k].length;
+      all += length;
+      open += state.phase == continuum::ContactPhase::open ? length : 0.;
+      slides += state.phase == continuum::ContactPhase::slides ? length : 0.;
+      slip = std::max(slip, std::abs(state.gap.slip));
+    }
+  summary.results["interface_open_share"] = {open / all, "-"};
+  if (scene.parameters.matrix.interface != "frictional")
+    return; // slides wherever it is closed, and nobody counts how far
+  summary.results["interface_sliding_share"] = {slides / all, "-"};
+  summary.results["interface_largest_slip"] = {slip, "m"};
 }
 } // namespace antiform::cases

@@ -15,6 +15,7 @@ namespace antiform::cases
 {
 class SectionGeometry;
 struct Scene;
+struct Summary;
 
 /// Holds a layer of grains on the edges of a mesh that ends where its outer grains begin,
 /// below and above it, by the law of 'Matrix/Interface'. Either the tie or the contacts.
@@ -38,4 +39,7 @@ void label_edges(dealii::parallel::distributed::Triangulation<2> &mesh,
 /// The join of a scene whose grains and mesh are there. Contacts carry the scene's
 /// prestress from the start.
 std::unique_ptr<SurfaceJoin> make_surface_join(Scene &scene);
+
+/// Of contacts: which share of the edges is open, which slides, and the largest slip.
+void report_surface(const Scene &scene, Summary &summary);
 } // namespace antiform::cases

@@ -211,5 +211,33 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          ResumeTiny,
                          ::testing::Values(Variant{"Coupled", {}}),
                          [](const auto &instance) { return instance.param.name; });
+
+// Choices of the overlap, in scenes that nothing breaks in.
+TEST(ResumeOfTheOverlap, AfterTheTimeLimitGivesTheSameBits)
+{
+  const TemporaryFolder folder;
+  for (const Variant &variant :
+       {Variant{"SubCycled",
+                {"Components=layer, matrix, walls", "Run/Driver=dynamic",
+                 "Matrix/Cell size ratio=16", "Matrix/Largest cell ratio=16",
+                 "Matrix/Burial depth ratio=9", "Matrix/Base depth ratio=9",
+                 "Bridging domain/Overlap width ratio=32",
+                 "Bridging domain/Overlap damping=0.05", "Bridging domain/Sub-cycles=5"}},
+        Variant{"Tied",
+                {"Layer/Flat joint/Elements=1", "Layer/Flat joint/Element moment=false",
+                 "Layer/Installation gap ratio=0.15", "Layer/Seed=4"}}})
+  {
+    SCOPED_TRACE(variant.name);
+    const std::string options = set(unbreakable(variant.entries)),
+                      whole = folder.path(variant.name),
+                      parts = folder.path(variant.name + "InParts");
+    ASSERT_EQ(run_tiny(whole, options).status, 0);
+    ASSERT_EQ(run_tiny(parts, options + " --time-limit 1e-3").status, 3);
+    const Outcome resumed = run_tiny(parts, options + " --resume");
+    ASSERT_EQ(resumed.status, 0) << resumed.output;
+    EXPECT_EQ(step_resumed_at(resumed.output), 64u);
+    expect_same_run(parts, whole);
+  }
+}
 } // namespace
 } // namespace resume_tests

@@ -197,12 +197,38 @@ TEST(JoinsOfDecks, FrictionAndCohesionAreTheDecks)
       {
         // Places at a straight edge: no grain comes nearer to it.
         EXPECT_NEAR(state.traction.normal, -pressure, 1e-6 * pressure);
-        if (way < 0.) // far enough for every grain to slide
-          EXPECT_NEAR(std::abs(state.traction.shear), cohesion + friction * pressure,
-                      1e-6 * pressure);
+        if (way > 0.)
+          continue; // not far enough for every grain to slide
+        EXPECT_NEAR(std::abs(state.traction.shear), cohesion + friction * pressure,
+                    1e-6 * pressure);
       }
     }
   }
+}
+
+TEST(JoinsOfDecks, ContactsTellWhatTheyDo)
+{
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string &friction)
+  {
+    const Outcome outcome = run_tiny(
+        folder.path(friction),
+        set(slow({on_surface, "Matrix/Interface=frictional", "Layer/Shape=cosine",
+                  "Components=layer, matrix, surface pressure, walls, damping",
+                  "Surface pressure/Pressure=1e6",
+                  "Matrix/Interface friction=" + friction})));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return summary_of(folder.path(friction));
+  };
+  const nlohmann::json slips = run("0.01"), sticks = run("100");
+  EXPECT_GT(result(slips, "interface_sliding_share"), 0.5);
+  EXPECT_EQ(result(sticks, "interface_sliding_share"), 0.);
+  EXPECT_GT(slips.at("energy").at("slip"), 0.);
+  EXPECT_EQ(sticks.at("energy").at("slip"), 0.);
+  EXPECT_GT(result(slips, "interface_largest_slip"),
+            5. * result(sticks, "interface_largest_slip")); // of its springs
+  // 2e-4 of the bent layer does not lift the cover against 1 MPa.
+  EXPECT_EQ(result(sticks, "interface_open_share"), 0.);
 }
 
 TEST(JoinsOfDecks, CarryACoverTooThinForAnOverlap)
