@@ -6,9 +6,9 @@
 
 namespace antiform::coupling
 {
-/// Cholesky factor of a symmetric positive definite matrix, for many solves (CHOLMOD,
-/// simplicial, minimum-degree order: on bodies of some thousand grains a solve takes
-/// 0.6 of that with a supernodal one). One rank, one thread.
+/// Cholesky factor of a symmetric positive definite matrix, for many solves: CHOLMOD's
+/// supernodal factor, and a solve of our own over its panels, which for one right side
+/// are too narrow for calls of BLAS. One rank, one thread.
 class ElasticFactor
 {
 public:
