@@ -158,6 +158,14 @@ void GrainBalance::add_forces(const discrete::StepTime &now,
 {
   Grains &grains = state_.grains;
   compute_joint_forces(grains, state_.joints, now, cracks, keep_forces);
+  if (keep_forces)
+  {
+    double sum = 0.;
+    for (const discrete::JointForce &force : state_.joints.force)
+      sum += std::sqrt(force.x * force.x + force.y * force.y); // hypot is slow
+    carried_ = sum / static_cast<double>(state_.joints.size());
+    most_carried_ = std::max(most_carried_, carried_);
+  }
   for (const GrainLoad &load : loads_)
   {
     grains.force_x[load.grain] += load.force.x;
@@ -212,22 +220,19 @@ BalanceRatios GrainBalance::over_joint_forces(const double mean,
 {
   if (largest == 0.)
     return {};
-  const double carried = mean_joint_force();
+  const double carried = reference_force();
   return {mean / carried, largest / carried,
           element_strength_ > 0. ? largest / element_strength_ : 0.};
 }
 
-double GrainBalance::mean_joint_force() const
+double GrainBalance::reference_force() const
 {
-  double carried = 0.;
-  for (const discrete::JointForce &force : state_.joints.force)
-    carried += std::sqrt(force.x * force.x + force.y * force.y); // hypot is slow
-  return carried / static_cast<double>(state_.joints.size());
+  return std::max(carried_, 0.05 * most_carried_);
 }
 
 double GrainBalance::allowed_force(const BalanceRatios &limits) const
 {
-  const double by_joints = limits.largest * mean_joint_force();
+  const double by_joints = limits.largest * reference_force();
   return element_strength_ > 0.
              ? std::min(by_joints, limits.of_strength * element_strength_)
              : by_joints;

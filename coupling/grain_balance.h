@@ -16,7 +16,9 @@ namespace antiform::coupling
 /// freedom. Torques count as forces at the rim of their grain.
 struct BalanceRatios
 {
-  double mean = 0.;    ///< their mean over the mean force of a joint [-]
+  /// Their mean over the mean force of a joint, or over a twentieth of the largest that
+  /// this has been, where joints carry less: rubble carries next to nothing [-].
+  double mean = 0.;
   double largest = 0.; ///< their largest over the same [-]
   double of_strength =
       0.; ///< their largest over what an element carries when it breaks
@@ -170,13 +172,16 @@ protected:
 
   Eigen::VectorXd prescribed_; ///< 1 where motion is prescribed, else 0
   Eigen::VectorXd rate_, residual_, support_;
+  double most_carried_ = 0.; ///< largest mean force of a joint so far [N]; state
 
 private:
-  double mean_joint_force() const; ///< kept at the last residual() [N]
+  /// What unbalanced forces are compared with [N].
+  double reference_force() const;
 
   GrainState &state_;
   std::vector<GrainLoad> loads_;
   std::vector<OperatorSpring> operator_springs_;
+  double carried_ = 0.; ///< mean force of a joint when forces were last kept [N]
   double element_strength_ = 0.; ///< mean, weighted; 0: nothing breaks [N]
   /// Largest deformation of a joint over sigma_b / k_n for a displacement of 1 [1/m].
   double most_deformation_ = 0.;

@@ -86,6 +86,7 @@ bool WalledGrains::find_contacts(const double reach, const std::vector<double> &
 
 void WalledGrains::visit_state(StateArchive &archive)
 {
+  archive.value("walled_grains/most_carried", most_carried_);
   for (std::size_t w = 0; w < walls_.size(); ++w)
   {
     std::vector<std::int64_t> known(in_operator_[w].begin(), in_operator_[w].end());
