@@ -247,7 +247,11 @@ void EventDriver::evaluate()
 
 bool EventDriver::is_balanced() const
 {
-  return body_.ratios().within(settings_.limits);
+  BalanceRatios limits = settings_.limits;
+  if (far_field_waits_)
+    for (double *limit : {&limits.mean, &limits.largest, &limits.of_strength})
+      *limit *= settings_.slack;
+  return body_.ratios().within(limits);
 }
 
 void EventDriver::visit_state(StateArchive &archive)

@@ -2,7 +2,7 @@
 // peak: seconds of one core, to the peak and through a stress drop of 10 %. Specimens of
 // about 1000, 4000 and 15000 grains, one after the other in one run, each with both.
 // Arguments: first and last seed (1 1), least and largest number of grains (0 20000), then
-// settings of the driver as name=value, to see what they are worth.
+// settings of the driver as name=value, to see what they are worth, or transits=value.
 #include "support/slow_loading.h"
 #include "support/specimen_fixture.h"
 
@@ -40,6 +40,7 @@ bool set(DriverSettings &settings, const std::string &text)
       {"radius", &settings.local.radius},
       {"core", &settings.local.core},
       {"share", &settings.local.share},
+      {"slack", &settings.slack},
       {"most_breaks", &settings.most_breaks},
       {"before_peak", &settings.settled_before_peak},
       {"after_peak", &settings.settled_after_peak},
@@ -92,11 +93,14 @@ void print(const char *what, const DriverReport &report, const double seconds)
               report.local_corrections, report.solves, report.evaluations, report.hand_overs, report.explicit_steps, seconds);
 }
 
-void compare(const double width, const std::uint64_t seed, const DriverSettings &settings)
+void compare(const double width,
+             const std::uint64_t seed,
+             const DriverSettings &settings,
+             const double transits)
 {
   Specimen one(width, seed), other(width, seed);
   const Ascent driver = climb(one, settings);
-  const SlowLoading slow = slow_loading(other, 300., driver.peak.load, 0.1);
+  const SlowLoading slow = slow_loading(other, transits, driver.peak.load, 0.1);
   std::printf("%zu grains, %zu joints, seed %lu\n", one.n_grains(),
               one.state.joints.size(), seed);
   print("peak:", driver.at_peak, driver.peak_seconds);
@@ -119,8 +123,9 @@ int main(const int argc, char **argv)
             least = argc > 3 ? std::atoi(argv[3]) : 0,
             most = argc > 4 ? std::atoi(argv[4]) : 20000;
   DriverSettings settings;
+  double transits = 300.;
   for (int k = 5; k < argc; ++k)
-    if (!set(settings, argv[k]))
+    if (std::sscanf(argv[k], "transits=%lf", &transits) != 1 && !set(settings, argv[k]))
     {
       std::fprintf(stderr, "no setting '%s'\n", argv[k]);
       return 1;
@@ -129,6 +134,6 @@ int main(const int argc, char **argv)
   for (int seed = first; seed <= last; ++seed)
     for (const double width : {22., 44.5, 84.6})
       if (const double n = 2.1 * width * width; n > least && n < most)
-        compare(width, static_cast<std::uint64_t>(seed), settings);
+        compare(width, static_cast<std::uint64_t>(seed), settings, transits);
   return 0;
 }

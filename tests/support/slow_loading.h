@@ -30,8 +30,8 @@ struct SlowLoading
 };
 
 /// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave along
-/// its height for a shortening of @p strain. It ends when the stress is @p stop_drop below
-/// the largest so far, 0: at @p strain. Densities are scaled; damping is combined, 0.7, so
+/// its height for a shortening of @p strain. It ends when bonds have broken and the stress
+/// is @p stop_drop below the largest so far, 0: at @p strain. Densities are scaled; damping is combined, 0.7, so
 /// that the drift does not rub. Constant loads are in balance before.
 inline SlowLoading slow_loading(Specimen &specimen,
                                 const double transits,
@@ -81,7 +81,8 @@ inline SlowLoading slow_loading(Specimen &specimen,
       result.peak_steps = result.steps;
       result.peak_seconds = processor_seconds() - start;
     }
-    if (result.stress < (1. - stop_drop) * result.peak && stop_drop > 0.)
+    if (stop_drop > 0. && !specimen.state.cracks.empty() && // no wave of the start
+        result.stress < (1. - stop_drop) * result.peak)
       break;
     discrete::damped_kick(grains, dt, damping);
     discrete::drift(grains, dt);

@@ -120,6 +120,43 @@ TEST(OverstressedElements, AreThoseThatTheKernelBreaks)
   EXPECT_TRUE(discrete::overstressed_elements(listed.grains, listed.joints).empty());
 }
 
+// The kernel's search against the law, a joint at a time.
+TEST(OverstressedElements, AreAllThatTheLawFinds)
+{
+  Sample rock;
+  rock.grains = discrete::test::lattice(13, 13); // joints beyond a whole number of lanes
+  discrete::test::bond_all(rock, brittle_law());
+  for (std::size_t i = 0; i < rock.grains.size(); ++i)
+  {
+    const auto number = static_cast<double>(i);
+    rock.grains.displacement_x[i] = 0.6e-3 * std::sin(7. * number);
+    rock.grains.displacement_y[i] = 0.6e-3 * std::sin(11. * number + 1.);
+    rock.grains.rotation[i] = 0.6e-3 * std::sin(5. * number + 2.);
+  }
+  discrete::break_element(rock.grains, rock.joints, 17, 1, Bond::broken_in_tension);
+  const auto over = discrete::overstressed_elements(rock.grains, rock.joints);
+  std::size_t next = 0;
+  for (std::size_t j = 0; j < rock.joints.size(); ++j)
+    for (int e = 0; e < 3; ++e)
+    {
+      const double factor =
+          discrete::load_factor(
+              discrete::bonded_element(rock.joints, j, e,
+                                       discrete::deformation(rock.grains, rock.joints, j)))
+              .value;
+      if (factor < 1. || (j == 17 && e == 1))
+        continue;
+      ASSERT_LT(next, over.size());
+      EXPECT_EQ(over[next].joint, j);
+      EXPECT_EQ(over[next].element, e);
+      EXPECT_EQ(over[next].factor.value, factor);
+      ++next;
+    }
+  EXPECT_EQ(next, over.size());
+  EXPECT_GT(next, 20U);
+  EXPECT_LT(next, 2 * rock.joints.size()); // neither all nor none of them
+}
+
 TEST(BreakElements, BookTheLostEnergyOnceWhereTheFacesRubAtOnce)
 {
   // Pressed and sheared beyond Coulomb's limit: what is closed slips back to friction.

@@ -200,9 +200,18 @@ TEST(EventDriverPeaks, IntactAndInLineFactorsBreakTheSameTenBondsFirst)
   }
 }
 
+// Without local moves, so that nothing but the factor differs. Batches on a factor in line
+// come out lower: 1 to 5 % in the method's own prototype.
 TEST(EventDriverPeaks, IntactAndInLineFactorsFindTheSameMeanLong)
 {
-  expect_same_mean([](const std::uint64_t seed) { return driver_peak(21., seed); },
+  expect_same_mean([](const std::uint64_t seed)
+                   {
+                     Specimen specimen(21., seed);
+                     GrainBalance body(specimen.state, specimen.platens);
+                     DriverSettings settings;
+                     settings.local.radius = 0.;
+                     return peak_of(specimen, body, settings);
+                   },
                    [](const std::uint64_t seed)
                    {
                      Specimen specimen(21., seed);
