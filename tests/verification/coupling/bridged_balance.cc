@@ -96,6 +96,9 @@ TEST(BridgedBalance, TangentIsTheSaddlePointsSolution)
   CoupledShape tied;
   tied.tied_every = 40;
   EXPECT_LT(error_of_tangent(tied), 1e-9);
+  CoupledShape soft;
+  soft.contrast = 1e4; // whose pins have all but nothing beside them
+  EXPECT_LT(error_of_tangent(soft), 1e-9);
 }
 
 TEST(BridgedBalance, OperatorIsSymmetricAndKeepsTheConstraint)
