@@ -26,7 +26,7 @@ struct ElasticFactor::Factor
 {
   struct Panel
   {
-    int first = 0;          ///< of its columns
+    int first = 0; ///< of its columns
     int n_columns = 0, n_rows = 0;
     std::ptrdiff_t rows = 0, values = 0; ///< where they begin
   };
@@ -35,20 +35,6 @@ struct ElasticFactor::Factor
   const int *rows = nullptr, *permutation = nullptr;
   const double *values = nullptr;
   int most_rows = 0;
-
-  using Part = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-  /// Rows of a panel below its own columns.
-  Part below(const Panel &panel) const
-  {
-    return {values + panel.values + panel.n_columns, panel.n_rows - panel.n_columns,
-            panel.n_columns, Eigen::OuterStride<>(panel.n_rows)};
-  }
-  /// Its own columns, of which the lower triangle counts.
-  Part own(const Panel &panel) const
-  {
-    return {values + panel.values, panel.n_columns, panel.n_columns,
-            Eigen::OuterStride<>(panel.n_rows)};
-  }
 
   void find_panels()
   {
@@ -72,7 +58,7 @@ ElasticFactor::ElasticFactor(const Eigen::SparseMatrix<double> &matrix)
     : factor_(std::make_unique<Factor>())
 {
   factor_->cholesky.cholmod().print = 0; // failures are exceptions
-  // Nested dissection: sections are plane, and minimum degree leaves a third more.
+  // Nested dissection: sections are plane.
   factor_->cholesky.cholmod().nmethods = 1;
   factor_->cholesky.cholmod().method[0].ordering = CHOLMOD_METIS;
   factor_->cholesky.compute(matrix);
@@ -90,47 +76,52 @@ ElasticFactor &ElasticFactor::operator=(ElasticFactor &&) noexcept = default;
 Eigen::VectorXd ElasticFactor::solve(const Eigen::VectorXd &right) const
 {
   const Factor &L = *factor_;
-  const Eigen::Index n = right.size();
-  Eigen::VectorXd x(n), others(L.most_rows);
-  for (Eigen::Index i = 0; i < n; ++i)
+  const auto n = static_cast<std::size_t>(right.size());
+  std::vector<double> x(n), below(static_cast<std::size_t>(L.most_rows));
+  for (std::size_t i = 0; i < n; ++i)
     x[i] = right[L.permutation[i]];
 
   for (const Factor::Panel &panel : L.panels)
   {
-    const int *const rows = L.rows + panel.rows + panel.n_columns;
+    double *const own = x.data() + panel.first;
+    const int *const rows = L.rows + panel.rows;
     const int n_below = panel.n_rows - panel.n_columns;
-    auto own = x.segment(panel.first, panel.n_columns);
-    const Factor::Part triangle = L.own(panel);
+    std::fill_n(below.begin(), n_below, 0.);
+    Eigen::Map<Eigen::VectorXd> sum(below.data(), n_below);
     for (int c = 0; c < panel.n_columns; ++c)
     {
-      own[c] /= triangle(c, c);
+      const double *const column = L.values + panel.values + c * panel.n_rows;
+      own[c] /= column[c];
       for (int r = c + 1; r < panel.n_columns; ++r)
-        own[r] -= own[c] * triangle(r, c);
+        own[r] -= own[c] * column[r];
+      sum += own[c] * Eigen::Map<const Eigen::VectorXd>(column + panel.n_columns, n_below);
     }
-    others.head(n_below).noalias() = L.below(panel) * own;
     for (int r = 0; r < n_below; ++r)
-      x[rows[r]] -= others[r];
+      x[rows[panel.n_columns + r]] -= below[r];
   }
 
   for (auto panel = L.panels.rbegin(); panel != L.panels.rend(); ++panel)
   {
-    const int *const rows = L.rows + panel->rows + panel->n_columns;
+    double *const own = x.data() + panel->first;
+    const int *const rows = L.rows + panel->rows;
     const int n_below = panel->n_rows - panel->n_columns;
     for (int r = 0; r < n_below; ++r)
-      others[r] = x[rows[r]];
-    auto own = x.segment(panel->first, panel->n_columns);
-    own.noalias() -= L.below(*panel).transpose() * others.head(n_below);
-    const Factor::Part triangle = L.own(*panel);
+      below[r] = x[rows[panel->n_columns + r]];
+    const Eigen::Map<const Eigen::VectorXd> others(below.data(), n_below);
     for (int c = panel->n_columns - 1; c >= 0; --c)
     {
+      const double *const column = L.values + panel->values + c * panel->n_rows;
+      double value =
+          own[c] -
+          others.dot(Eigen::Map<const Eigen::VectorXd>(column + panel->n_columns, n_below));
       for (int r = c + 1; r < panel->n_columns; ++r)
-        own[c] -= triangle(r, c) * own[r];
-      own[c] /= triangle(c, c);
+        value -= column[r] * own[r];
+      own[c] = value / column[c];
     }
   }
 
-  Eigen::VectorXd solution(n);
-  for (Eigen::Index i = 0; i < n; ++i)
+  Eigen::VectorXd solution(right.size());
+  for (std::size_t i = 0; i < n; ++i)
     solution[L.permutation[i]] = x[i];
   return solution;
 }

@@ -22,7 +22,7 @@ EventDriver::EventDriver(GrainState &state,
   const auto n = static_cast<double>(radius.size());
   mean_diameter_ = 2. * std::accumulate(radius.begin(), radius.end(), 0.) / n;
   if (settings_.events_per_step == 0)
-    settings_.events_per_step = std::max(1, static_cast<int>(std::lround(n / 300.)));
+    settings_.events_per_step = std::max(1, static_cast<int>(std::lround(n / 200.)));
   if (GrainBalance *grains = body.grains_alone();
       grains != nullptr && settings_.local.radius > 0.)
     local_.emplace(*grains, settings_.local, mean_diameter_);

@@ -93,6 +93,22 @@ void print(const char *what, const DriverReport &report, const double seconds)
               report.local_corrections, report.solves, report.evaluations, report.hand_overs, report.explicit_steps, seconds);
 }
 
+/// Milliseconds of the processor that a solve takes, and an evaluation of the forces.
+void print_unit_costs(Specimen &specimen)
+{
+  GrainBalance body(specimen.state, specimen.platens);
+  constexpr int n = 50;
+  Eigen::VectorXd r = body.residual();
+  const double start = processor_seconds();
+  for (int k = 0; k < n; ++k)
+    r = body.solve(body.tangent());
+  const double solved = processor_seconds();
+  for (int k = 0; k < n; ++k)
+    body.residual();
+  std::printf("  a solve %.3f ms, an evaluation %.3f ms (damaged body)\n",
+              1e3 * (solved - start) / n, 1e3 * (processor_seconds() - solved) / n);
+}
+
 void compare(const double width,
              const std::uint64_t seed,
              const DriverSettings &settings,
@@ -103,6 +119,7 @@ void compare(const double width,
   const SlowLoading slow = slow_loading(other, transits, driver.peak.load, 0.1);
   std::printf("%zu grains, %zu joints, seed %lu\n", one.n_grains(),
               one.state.joints.size(), seed);
+  print_unit_costs(one);
   print("peak:", driver.at_peak, driver.peak_seconds);
   print("drop:", driver.report, driver.seconds);
   std::printf("  explicit to the peak %8lu steps %7.2f s, to the drop %8lu steps %7.2f s\n",
