@@ -178,4 +178,52 @@ TEST(CoupledEventRun, FoldsALayerAsSlowWallsDoLong)
               5e-3);
   EXPECT_NEAR(result(with, "peak_stress") / result(slow, "peak_stress"), 1., 0.03);
 }
+
+// A straight layer that does not break buckles, and its section's load has a maximum.
+TEST(CoupledEventRun, FollowsABucklingLayerThroughItsLargestLoadLong)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> deck{"Layer/Breakable=false",
+                                      "Matrix/Stiffness contrast=100",
+                                      "Run/Longest shortening=0.1"};
+  const auto with_deck = [&](const char *name, std::vector<std::string> entries)
+  {
+    entries.insert(entries.end(), deck.begin(), deck.end());
+    return run_deck(folder.path(name), entries);
+  };
+  with_deck("with", {events, "Walls/Load step=5e-4", "Walls/Balance tolerance=1e-4",
+                     "Run/End shortening=0.0525"});
+  with_deck("slow", {"Walls/Transits per millistrain=20",
+                     "Output/Samples per millistrain=4", "Run/End shortening=0.0525"});
+  const double linear = result(
+      with_deck("linear", {"Run/Driver=buckling", "Components=layer, matrix, walls"}),
+      "critical_shortening");
+  expect_balances(folder.path("with"));
+
+  struct Largest
+  {
+    double force = 0., shortening = 0., amplitude = 0., last = 0.;
+  };
+  const auto largest = [&](const char *name)
+  {
+    const CsvTable history(folder.path(name) + "/history.csv");
+    const auto force = history.column("wall_force_N"),
+               shortening = history.column("shortening"),
+               amplitude = history.column("fold_amplitude_m");
+    const auto k = static_cast<std::size_t>(std::max_element(force.begin(), force.end()) -
+                                            force.begin());
+    std::printf("  %s: largest load %.5g N at %.5f, amplitude %.4f m\n", name, force[k],
+                shortening[k], amplitude[k]);
+    return Largest{force[k], shortening[k], amplitude[k], force.back()};
+  };
+  const Largest with = largest("with"), slow = largest("slow");
+  EXPECT_LT(with.last, 0.998 * with.force); // beyond it, in balance
+  // Twenty transits a millistrain leave some tenths of a per cent.
+  EXPECT_NEAR(with.force / slow.force, 1., 5e-3);
+  EXPECT_NEAR(with.shortening / slow.shortening, 1., 0.02);
+  EXPECT_NEAR(with.amplitude / slow.amplitude, 1., 0.02);
+  // An imperfect layer comes to it beyond the load at which a perfect one buckles.
+  EXPECT_GT(with.shortening, linear);
+  EXPECT_LT(with.shortening, 1.25 * linear);
+}
 } // namespace coupled_event_runs_tests
