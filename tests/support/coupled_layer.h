@@ -4,6 +4,8 @@
 // layer's strengths and stiffness those of a hard rock.
 #include "support/coupling_fixtures.h"
 
+#include "coupling/bridged_balance.h"
+#include "coupling/event_driver.h"
 #include "coupling/walled_grains.h"
 #include "discrete/homogenise.h"
 #include "discrete/packing.h"
@@ -137,4 +139,51 @@ private:
     }
   }
 };
+
+inline BridgedBalance body_of(CoupledLayer &layer)
+{
+  return BridgedBalance(layer.model.state, layer.bearing(), {}, *layer.model.mesh,
+                        *layer.model.domain);
+}
+
+/// The driver of a body of grains and mesh.
+struct Driven
+{
+  BridgedBalance body;
+  EventDriver driver;
+
+  Driven(CoupledLayer &layer, const DriverSettings &settings)
+      : body(body_of(layer))
+      , driver(
+            layer.model.state,
+            body,
+            [this, dynamics = settings.dynamics](const RestGoal &goal)
+            { return body.settle(dynamics, goal); },
+            settings)
+  {
+  }
+};
+
+/// Densities for motion in time: every grain and node about as fast.
+inline void scale_for_motion(Bridged &model)
+{
+  model.set_masses(common_step(
+      model.state.grains,
+      discrete::stiffness_sums(model.state.grains, model.state.joints, false)));
+  model.factorise();
+}
+
+/// Terms of the last record, with the springs of the walls, whose work is in it.
+inline Energies books_of(const Driven &run, const CoupledLayer &layer)
+{
+  Energies books = run.driver.report().records.back().energies;
+  for (const discrete::Wall &wall : layer.model.walls)
+    books.strain_grains += wall_energy(layer.model.state.grains, wall);
+  return books;
+}
+
+inline double open_share(const Energies &books)
+{
+  return std::abs(books.boundary_work - books.stored_and_spent()) / books.magnitude();
+}
 } // namespace antiform::coupling::test

@@ -16,12 +16,6 @@ namespace
 {
 using discrete::Bond;
 
-BridgedBalance body_of(CoupledLayer &layer)
-{
-  return BridgedBalance(layer.model.state, layer.bearing(), {}, *layer.model.mesh,
-                        *layer.model.domain);
-}
-
 /// The linear state at a shortening of 1, walls as springs that move in: Trilinos' saddle
 /// point.
 StaticSolution unit_shortening(const CoupledLayer &layer)
@@ -118,24 +112,6 @@ TEST(BridgedBalance, OperatorIsSymmetricAndKeepsTheConstraint)
 
 namespace
 {
-/// The driver of a body of grains and mesh.
-struct Driven
-{
-  BridgedBalance body;
-  EventDriver driver;
-
-  Driven(CoupledLayer &layer, const DriverSettings &settings)
-      : body(body_of(layer))
-      , driver(
-            layer.model.state,
-            body,
-            [this, dynamics = settings.dynamics](const RestGoal &goal)
-            { return body.settle(dynamics, goal); },
-            settings)
-  {
-  }
-};
-
 /// The element of the layer that breaks first in linear theory, and the force conjugate
 /// to the shortening then.
 struct FirstBreak
@@ -256,15 +232,6 @@ Eigen::VectorXd place_of(const BridgedBalance &body, const CoupledLayer &layer)
   return u;
 }
 
-/// Densities for motion in time: every grain and node about as fast.
-void scale_for_motion(Bridged &model)
-{
-  model.set_masses(common_step(
-      model.state.grains,
-      discrete::stiffness_sums(model.state.grains, model.state.joints, false)));
-  model.factorise();
-}
-
 /// Shorten in time by the program's loop, then hold the walls until all is at rest.
 /// \return force of the walls on the section
 double shorten_in_time(CoupledLayer &layer, const double shortening)
@@ -312,23 +279,6 @@ TEST(BridgedBalance, ElasticPathIsThatOfMotionInTime)
   EXPECT_NEAR(run.body.conjugate_force() / (force * implicit.shape.length), 1., 1e-6);
   EXPECT_LT(run.body.gap(), 1e-14);
 }
-
-namespace
-{
-/// Terms of the last record, with the springs of the walls, whose work is in it.
-Energies books_of(const Driven &run, const CoupledLayer &layer)
-{
-  Energies books = run.driver.report().records.back().energies;
-  for (const discrete::Wall &wall : layer.model.walls)
-    books.strain_grains += wall_energy(layer.model.state.grains, wall);
-  return books;
-}
-
-double open_share(const Energies &books)
-{
-  return std::abs(books.boundary_work - books.stored_and_spent()) / books.magnitude();
-}
-} // namespace
 
 TEST(BridgedBalance, EveryRecordIsInBalanceKeepsTheConstraintAndClosesTheBooks)
 {
@@ -444,95 +394,5 @@ TEST(BridgedBalance, RefusesWhatCannotFollow)
                                 { return entry.wall < 0; }),
                  supports.end());
   EXPECT_THROW(body_of(layer), NumericalError);
-}
-
-namespace
-{
-/// Mean stress of the layer at its ends [Pa].
-double layer_stress(const CoupledLayer &layer)
-{
-  double sum = 0.;
-  for (const discrete::Wall &wall : layer.model.walls)
-    sum += 0.5 * region_reaction(layer.model.state.grains, wall, 0);
-  return sum / (2. * layer.shape.layer);
-}
-
-constexpr double far = 4e-3; ///< shortening, beyond all peaks
-constexpr int n_samples = 200;
-
-double peak_by_events(const CoupledShape &shape)
-{
-  CoupledLayer layer{shape};
-  DriverSettings settings;
-  settings.stop_drop = 0.;
-  Driven run(layer, settings);
-  double peak = 0., open = 0., open_at_peak = 0.;
-  for (int k = 1; k <= n_samples; ++k)
-  {
-    run.driver.run_to(far * k / n_samples);
-    open = std::max(open, open_share(books_of(run, layer)));
-    if (layer_stress(layer) > peak)
-    {
-      peak = layer_stress(layer);
-      open_at_peak = open;
-    }
-    EXPECT_LT(run.body.gap(), 1e-12 * largest_displacement(layer.model));
-  }
-  EXPECT_LT(open_at_peak, 1e-3);
-  // The layer comes down in a few long sweeps: kinks of the law within a move are not
-  // those of a trapezoid.
-  EXPECT_LT(open, 5e-3);
-  const DriverReport &report = run.driver.report();
-  std::printf("  seed %d: %zu grains, events: %.2f MPa; %d load steps, %d batches, %d "
-              "solves, %d hand-overs; books open by %.1e, %.1e\n",
-              static_cast<int>(shape.seed), layer.n_grains(), 1e-6 * peak,
-              static_cast<int>(report.load_steps), static_cast<int>(report.batches),
-              static_cast<int>(report.solves), static_cast<int>(report.hand_overs),
-              open_at_peak, open);
-  return peak;
-}
-
-/// By the program's loop, @p n_steps for the whole shortening.
-double peak_in_time(const CoupledShape &shape, const std::int64_t n_steps)
-{
-  CoupledLayer layer{shape};
-  Bridged &model = layer.model;
-  scale_for_motion(model);
-  const double dt = 0.8 * model.stable_step() / std::sqrt(1.7);
-  const double speed =
-      0.5 * far * layer.shape.length / (static_cast<double>(n_steps) * dt);
-  Loop::Options options;
-  options.damping = 0.7;
-  options.combined = true;
-  options.wall_speed = [=](double) { return speed; };
-  Loop loop(model, dt, options);
-  loop.add(std::make_unique<BrokenJoints>(model.state), {Stage::forces}, 10, "friction");
-  double peak = 0.;
-  for (std::int64_t step = 0; step < n_steps; ++step)
-  {
-    loop.advance(1);
-    peak = std::max(peak, layer_stress(layer));
-  }
-  std::printf("  %d steps: %.2f MPa\n", static_cast<int>(n_steps), 1e-6 * peak);
-  return peak;
-}
-} // namespace
-
-// A peak is chaotic, as of grains alone; means agree. 200 000 steps are some 2000
-// transits of a wave along the section.
-TEST(BridgedBalance, PeaksAreThoseOfSlowMotionInTheMeanLong)
-{
-  double ratio = 0.;
-  constexpr int n = 6;
-  for (int seed = 1; seed <= n; ++seed)
-  {
-    CoupledShape shape;
-    shape.seed = static_cast<std::uint64_t>(seed);
-    const double one = peak_by_events(shape) / peak_in_time(shape, 200000);
-    EXPECT_NEAR(one, 1., 0.16) << "seed " << seed; // as of 300 grains alone
-    ratio += one / n;
-  }
-  std::printf("  mean ratio %.4f\n", ratio);
-  EXPECT_NEAR(ratio, 1., 0.025);
 }
 } // namespace antiform::coupling::test::bridged_balance_tests
