@@ -47,8 +47,8 @@ struct ElasticFactor::Factor
     values = static_cast<const double *>(L.x);
     for (std::size_t s = 0; s < L.nsuper; ++s)
     {
-      panels.push_back({super[s], super[s + 1] - super[s], row_begin[s + 1] - row_begin[s],
-                        row_begin[s], value_begin[s]});
+      panels.push_back({super[s], super[s + 1] - super[s],
+                        row_begin[s + 1] - row_begin[s], row_begin[s], value_begin[s]});
       most_rows = std::max(most_rows, panels.back().n_rows);
     }
   }
@@ -94,7 +94,8 @@ Eigen::VectorXd ElasticFactor::solve(const Eigen::VectorXd &right) const
       own[c] /= column[c];
       for (int r = c + 1; r < panel.n_columns; ++r)
         own[r] -= own[c] * column[r];
-      sum += own[c] * Eigen::Map<const Eigen::VectorXd>(column + panel.n_columns, n_below);
+      sum +=
+          own[c] * Eigen::Map<const Eigen::VectorXd>(column + panel.n_columns, n_below);
     }
     for (int r = 0; r < n_below; ++r)
       x[rows[panel.n_columns + r]] -= below[r];
@@ -111,9 +112,8 @@ Eigen::VectorXd ElasticFactor::solve(const Eigen::VectorXd &right) const
     for (int c = panel->n_columns - 1; c >= 0; --c)
     {
       const double *const column = L.values + panel->values + c * panel->n_rows;
-      double value =
-          own[c] -
-          others.dot(Eigen::Map<const Eigen::VectorXd>(column + panel->n_columns, n_below));
+      double value = own[c] - others.dot(Eigen::Map<const Eigen::VectorXd>(
+                                  column + panel->n_columns, n_below));
       for (int r = c + 1; r < panel->n_columns; ++r)
         value -= column[r] * own[r];
       own[c] = value / column[c];

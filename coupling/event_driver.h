@@ -29,8 +29,8 @@ struct DriverSettings
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
 
   LocalSettings local; ///< of bodies that are grains alone
-  /// While bonds of parts that were balanced apart still break, the whole may be that many
-  /// times beyond the limits before it is corrected.
+  /// While bonds of parts that were balanced apart still break, the whole may be that
+  /// many times beyond the limits before it is corrected.
   double slack = 2.;
 
   int accelerate_after = 2; ///< corrections since the last break or load step

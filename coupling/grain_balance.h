@@ -155,8 +155,8 @@ public:
   const GrainState &state() const { return state_; }
 
 protected:
-  /// With @p n_more unknowns behind those of the grains, free at first; assemble() is left
-  /// to do.
+  /// With @p n_more unknowns behind those of the grains, free at first; assemble() is
+  /// left to do.
   GrainBalance(GrainState &state,
                const std::vector<PrescribedMotion> &prescribed,
                std::vector<GrainLoad> loads,

@@ -106,8 +106,9 @@ void LocalMoves::gather_members(const std::size_t joint)
     most = {std::max(most.x, place.x), std::max(most.y, place.y)};
     for (std::int32_t l = joints.grain_begin[i]; l < joints.grain_begin[i + 1]; ++l)
     {
-      const std::int32_t j = joints.grain_joint[l],
-                         other = joints.first[j] == i ? joints.second[j] : joints.first[j];
+      const std::int32_t j = joints.grain_joint[l], other = joints.first[j] == i
+                                                                ? joints.second[j]
+                                                                : joints.first[j];
       if (local_[other] < 0 && norm(grains.reference(other) - centre_) <= radius)
       {
         local_[other] = 0;
@@ -136,8 +137,9 @@ void LocalMoves::gather_joints()
     const std::int32_t i = grains_[m];
     for (std::int32_t l = joints.grain_begin[i]; l < joints.grain_begin[i + 1]; ++l)
     {
-      const std::int32_t j = joints.grain_joint[l],
-                         other = joints.first[j] == i ? joints.second[j] : joints.first[j];
+      const std::int32_t j = joints.grain_joint[l], other = joints.first[j] == i
+                                                                ? joints.second[j]
+                                                                : joints.first[j];
       if (local_[other] < 0)
       {
         local_[other] = static_cast<std::int32_t>(grains_.size());
@@ -296,11 +298,11 @@ bool LocalMoves::break_next(const discrete::StepTime &now,
     const std::size_t j = element.joint;
     const Vec2 place = 0.5 * (patch_.grains.reference(patch_.joints.first[j]) +
                               patch_.grains.reference(patch_.joints.second[j]));
-    if (first != nullptr ? static_cast<std::size_t>(joints_[j]) == first->joint &&
-                               element.element == first->element
-                         : norm(place - centre_) <= settings_.core * diameter_ &&
-                               (next == nullptr ||
-                                element.factor.value > next->factor.value))
+    if (first != nullptr
+            ? static_cast<std::size_t>(joints_[j]) == first->joint &&
+                  element.element == first->element
+            : norm(place - centre_) <= settings_.core * diameter_ &&
+                  (next == nullptr || element.factor.value > next->factor.value))
       next = &element;
   }
   if (next == nullptr)

@@ -12,12 +12,13 @@
 
 namespace antiform::coupling
 {
-/// How the neighbourhood of a break is balanced apart (docs/theory/quasi_static_driver.md).
+/// How the neighbourhood of a break is balanced apart
+/// (docs/theory/quasi_static_driver.md).
 struct LocalSettings
 {
-  double radius = 5.;       ///< of a patch about a break, mean diameters; 0: none
-  double core = 2.5;        ///< within which others break after it, mean diameters
-  double share = 0.3;       ///< of the largest allowed force that is left in a patch
+  double radius = 5.;        ///< of a patch about a break, mean diameters; 0: none
+  double core = 2.5;         ///< within which others break after it, mean diameters
+  double share = 0.3;        ///< of the largest allowed force that is left in a patch
   int most_corrections = 20; ///< between two breaks of a patch
   int most_breaks = 20;      ///< in a patch, one after the other
 };
@@ -45,8 +46,9 @@ public:
   /// Balance the patch about @p first and, if it is over its strength still, break it;
   /// then, by turns, balance and the most loaded bond of the patch's core that is over.
   /// Cracks go to the body's state. \param allowed largest unbalanced force in the body
-  LocalResult
-  relax(const discrete::LoadedElement &first, const discrete::StepTime &now, double allowed);
+  LocalResult relax(const discrete::LoadedElement &first,
+                    const discrete::StepTime &now,
+                    double allowed);
 
 private:
   void gather(std::size_t joint);

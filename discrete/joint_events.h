@@ -28,8 +28,9 @@ struct LoadedElement
 };
 
 /// All bonded elements of breakable flat joints that are at a strength or beyond, in
-/// the order of joints and elements. Looks at the present displacements alone; nothing but
-/// the kernels' memory is changed: theirs is the search among intact joints. Throws std::invalid_argument where a breakable joint is no flat joint.
+/// the order of joints and elements. Looks at the present displacements alone; nothing
+/// but the memory of the kernels is changed, which search the intact joints. Throws
+/// std::invalid_argument where a breakable joint is no flat joint.
 std::vector<LoadedElement> overstressed_elements(const Grains &grains, Joints &joints);
 
 /// For every bonded element of the breakable joints that nears a strength while the

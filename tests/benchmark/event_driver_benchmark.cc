@@ -1,8 +1,9 @@
 // Loading from event to event beside explicit loading at 300 wave transits to the same
 // peak: seconds of one core, to the peak and through a stress drop of 10 %. Specimens of
 // about 1000, 4000 and 15000 grains, one after the other in one run, each with both.
-// Arguments: first and last seed (1 1), least and largest number of grains (0 20000), then
-// settings of the driver as name=value, to see what they are worth, or transits=value.
+// Arguments: first and last seed (1 1), least and largest number of grains (0 20000),
+// then settings of the driver as name=value, to see what they are worth, or
+// transits=value.
 #include "support/slow_loading.h"
 #include "support/specimen_fixture.h"
 
@@ -86,11 +87,13 @@ Ascent climb(Specimen &specimen, const DriverSettings &settings)
 
 void print(const char *what, const DriverReport &report, const double seconds)
 {
-  std::printf("  driver to the %-9s %4ld load steps %6ld batches %6ld breaks %6ld patches "
-              "%6ld local solves %6ld solves %6ld evaluations %2ld hand-overs %7ld steps "
-              "%7.2f s\n",
-              what, report.load_steps, report.batches, report.breaks, report.local_moves,
-              report.local_corrections, report.solves, report.evaluations, report.hand_overs, report.explicit_steps, seconds);
+  std::printf(
+      "  driver to the %-9s %4ld load steps %6ld batches %6ld breaks %6ld patches "
+      "%6ld local solves %6ld solves %6ld evaluations %2ld hand-overs %7ld steps "
+      "%7.2f s\n",
+      what, report.load_steps, report.batches, report.breaks, report.local_moves,
+      report.local_corrections, report.solves, report.evaluations, report.hand_overs,
+      report.explicit_steps, seconds);
 }
 
 /// Milliseconds of the processor that a solve takes, and an evaluation of the forces.
@@ -122,8 +125,9 @@ void compare(const double width,
   print_unit_costs(one);
   print("peak:", driver.at_peak, driver.peak_seconds);
   print("drop:", driver.report, driver.seconds);
-  std::printf("  explicit to the peak %8lu steps %7.2f s, to the drop %8lu steps %7.2f s\n",
-              slow.peak_steps, slow.peak_seconds, slow.steps, slow.seconds);
+  std::printf(
+      "  explicit to the peak %8lu steps %7.2f s, to the drop %8lu steps %7.2f s\n",
+      slow.peak_steps, slow.peak_seconds, slow.steps, slow.seconds);
   std::printf("  peaks %.2f MPa at %.4g, explicit %.2f MPa at %.4g, ratio %.3f\n",
               1e-6 * one.stress(driver.peak.force), driver.peak.load, 1e-6 * slow.peak,
               slow.peak_strain, one.stress(driver.peak.force) / slow.peak);

@@ -29,10 +29,11 @@ struct SlowLoading
   double peak_seconds = 0., seconds = 0.; ///< of the processor
 };
 
-/// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave along
-/// its height for a shortening of @p strain. It ends when bonds have broken and the stress
-/// is @p stop_drop below the largest so far, 0: at @p strain. Densities are scaled; damping is combined, 0.7, so
-/// that the drift does not rub. Constant loads are in balance before.
+/// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave
+/// along its height for a shortening of @p strain. It ends when bonds have broken and the
+/// stress is @p stop_drop below the largest so far, 0: at @p strain. Densities are
+/// scaled; damping is combined, 0.7, so that the drift does not rub. Constant loads are
+/// in balance before.
 inline SlowLoading slow_loading(Specimen &specimen,
                                 const double transits,
                                 const double strain,

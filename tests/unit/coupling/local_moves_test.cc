@@ -146,9 +146,10 @@ TEST(LocalMoves, OfTheWholeBodyAreItsBalance)
   std::int64_t breaks = 0;
   for (over = {over.front()}; !over.empty(); ++breaks)
   {
-    const LoadedElement next = *std::max_element(
-        over.begin(), over.end(), [](const LoadedElement &a, const LoadedElement &b)
-        { return a.factor.value < b.factor.value; });
+    const LoadedElement next =
+        *std::max_element(over.begin(), over.end(),
+                          [](const LoadedElement &a, const LoadedElement &b)
+                          { return a.factor.value < b.factor.value; });
     discrete::break_elements(other.state.grains, other.state.joints, {next}, {},
                              other.state.cracks);
     held += balance(whole);
@@ -202,16 +203,17 @@ TEST(LocalMoves, BalanceThePatchAndLeaveTheRest)
   EXPECT_NEAR((stored - energy()) / result.held, 1., 1e-2);
 
   const Eigen::VectorXd r = body.residual();
-  const Vec2 centre =
-      0.5 * (before.grains.reference(before.joints.first[lattice.weak]) +
-             before.grains.reference(before.joints.second[lattice.weak]));
+  const Vec2 centre = 0.5 * (before.grains.reference(before.joints.first[lattice.weak]) +
+                             before.grains.reference(before.joints.second[lattice.weak]));
   double beyond = 0.;
   std::size_t n_moved = 0;
   for (std::size_t i = 0; i < before.grains.size(); ++i)
   {
     const auto first = static_cast<Eigen::Index>(3 * i);
-    const double worst =
-        r.segment<3>(first).cwiseQuotient(body.levers().segment<3>(first)).cwiseAbs().maxCoeff();
+    const double worst = r.segment<3>(first)
+                             .cwiseQuotient(body.levers().segment<3>(first))
+                             .cwiseAbs()
+                             .maxCoeff();
     const bool has_moved =
         lattice.state.grains.displacement_y[i] != before.grains.displacement_y[i];
     n_moved += has_moved ? 1 : 0;

@@ -19,14 +19,16 @@ namespace antiform::coupling::test::event_driver_peaks_tests
 namespace
 {
 /// Largest stress [Pa].
-double peak_of(Specimen &specimen, GrainBalance &body, const DriverSettings &settings = {})
+double
+peak_of(Specimen &specimen, GrainBalance &body, const DriverSettings &settings = {})
 {
   EventDriver driver(body, settings);
   EXPECT_FALSE(driver.run_to(0.05)) << "the specimen did not fail";
   return specimen.stress(driver.largest_force());
 }
 
-double driver_peak(const double size, const std::uint64_t seed, const double side_load = 0.)
+double
+driver_peak(const double size, const std::uint64_t seed, const double side_load = 0.)
 {
   Specimen specimen(size, seed);
   GrainBalance body(specimen.state, specimen.platens, side_loads(specimen, side_load));
@@ -92,9 +94,9 @@ TEST(EventDriverPeaks, AreThoseOfSlowLoadingUnderConfinementLong)
 
 namespace
 {
-/// Grains whose operator is that of the damaged body, at every correction: bonded elements
-/// whole, broken ones by what of them is closed; a thousandth of the intact stiffness
-/// keeps what is loose.
+/// Grains whose operator is that of the damaged body, at every correction: bonded
+/// elements whole, broken ones by what of them is closed; a thousandth of the intact
+/// stiffness keeps what is loose.
 class InLineBalance : public GrainBalance
 {
 public:
@@ -200,25 +202,26 @@ TEST(EventDriverPeaks, IntactAndInLineFactorsBreakTheSameTenBondsFirst)
   }
 }
 
-// Without local moves, so that nothing but the factor differs. Batches on a factor in line
-// come out lower: 1 to 5 % in the method's own prototype.
+// Without local moves, so that nothing but the factor differs. Batches on a factor in
+// line come out lower: 1 to 5 % in the method's own prototype.
 TEST(EventDriverPeaks, IntactAndInLineFactorsFindTheSameMeanLong)
 {
-  expect_same_mean([](const std::uint64_t seed)
-                   {
-                     Specimen specimen(21., seed);
-                     GrainBalance body(specimen.state, specimen.platens);
-                     DriverSettings settings;
-                     settings.local.radius = 0.;
-                     return peak_of(specimen, body, settings);
-                   },
-                   [](const std::uint64_t seed)
-                   {
-                     Specimen specimen(21., seed);
-                     InLineBalance body(specimen.state, specimen.platens);
-                     return peak_of(specimen, body);
-                   },
-                   0.1, 0.02);
+  expect_same_mean(
+      [](const std::uint64_t seed)
+      {
+        Specimen specimen(21., seed);
+        GrainBalance body(specimen.state, specimen.platens);
+        DriverSettings settings;
+        settings.local.radius = 0.;
+        return peak_of(specimen, body, settings);
+      },
+      [](const std::uint64_t seed)
+      {
+        Specimen specimen(21., seed);
+        InLineBalance body(specimen.state, specimen.platens);
+        return peak_of(specimen, body);
+      },
+      0.1, 0.02);
 }
 
 // The ascent of a large specimen, by the threshold of the method's own prototype: 3000
