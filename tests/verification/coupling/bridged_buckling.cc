@@ -35,7 +35,7 @@ struct FoldInBalance
       , driver(
             fold.model().state,
             body,
-            [this](const BalanceRatios &limits) { return body.settle({}, limits); },
+            [this](const RestGoal &goal) { return body.settle({}, goal); },
             settings)
   {
   }
