@@ -65,6 +65,13 @@ run_program(const std::string &arguments, const int n_ranks = 1, const int n_thr
   return run_command(command + std::string(ANTIFORM_PROGRAM) + " " + arguments);
 }
 
+/// Let the program draw a page. \param matplotlib directory for matplotlib's cache of fonts
+inline Outcome draw_page(const std::string &arguments, const std::string &matplotlib)
+{
+  return run_command(clean_environment() + "MPLCONFIGDIR=" + matplotlib + " " +
+                     ANTIFORM_PROGRAM + " " + arguments);
+}
+
 /// The program at work beside the test, on one thread: to be signalled.
 class RunningProgram
 {

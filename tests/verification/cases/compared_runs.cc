@@ -61,8 +61,7 @@ for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * facto
 
   static Outcome compare(const std::string &runs, const std::string &out)
   {
-    return run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") +
-                       " " ANTIFORM_PROGRAM " compare " + runs + " -o " + out);
+    return draw_page("compare " + runs + " -o " + out, folder_->path("matplotlib"));
   }
 
   /// The line of @p measure in the last group of a comparison.

@@ -132,9 +132,8 @@ TEST_F(OutputOfARun, MakesPictures)
 TEST_F(OutputOfARun, MakesAPageThatStandsAlone)
 {
   const std::string page = folder_->path("page.html");
-  const Outcome outcome =
-      run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") + " " ANTIFORM_PROGRAM
-                  " report " + directory() + " -o " + page);
+  const Outcome outcome = draw_page("report " + directory() + " -o " + page,
+                                    folder_->path("matplotlib"));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find(page), std::string::npos) << outcome.output;
   const std::string text = contents(page);
@@ -187,7 +186,7 @@ TEST(Report, RefusesWhatIsNoRun)
   const TemporaryFolder folder;
   for (const std::string where : {folder.path("nowhere"), folder.path(".")})
   {
-    const Outcome outcome = run_command(ANTIFORM_PROGRAM " report " + where);
+    const Outcome outcome = run_program("report " + where);
     EXPECT_EQ(outcome.status, 1) << outcome.output;
     EXPECT_NE(outcome.output.find(where), std::string::npos) << outcome.output;
   }

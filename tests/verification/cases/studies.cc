@@ -105,9 +105,7 @@ TEST(Study, LeavesALineAMemberAndRunsNoneTwice)
   EXPECT_EQ(contents(out + "/study.csv"), table);
   EXPECT_EQ(ends_of(out), ends);
 
-  const Outcome page =
-      run_command("MPLCONFIGDIR=" + folder.path("matplotlib") +
-                  " " ANTIFORM_PROGRAM " report " + out);
+  const Outcome page = draw_page("report " + out, folder.path("matplotlib"));
   EXPECT_EQ(page.status, 0) << page.output;
   const std::string html = contents(out + "/study.html");
   EXPECT_EQ(occurrences(html, "<svg"), 1u);
