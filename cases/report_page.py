@@ -28,6 +28,7 @@ table { border-collapse: collapse; font-size: .88rem; }
 th, td { text-align: left; padding: .15rem .8rem .15rem 0; border-bottom: 1px solid #eee;
   vertical-align: top; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+tr.failed { color: #b2182b; } figure svg { max-width: 100%; height: auto; }
 summary { cursor: pointer; font-weight: 600; margin: 1rem 0 .4rem; }
 pre { font-size: .8rem; overflow-x: auto; background: #f6f6f6; padding: .6rem; }
 @media print { body { max-width: none; font-size: 10pt; padding: 0; }
@@ -85,14 +86,21 @@ class Page:
                  f'src="data:image/{kind};base64,{code}">'
                  f"<figcaption>{html.escape(caption)}</figcaption></figure>")
 
-    def table(self, head, rows, numbers=True):
-        """@p rows of text; with @p numbers what begins with a digit or a sign is one."""
+    def vectors(self, svg, caption):
+        """A chart as part of the page, from the text of an SVG file."""
+        self.add(f"<figure>{svg[svg.index('<svg'):]}<figcaption>{html.escape(caption)}"
+                 "</figcaption></figure>")
+
+    def table(self, head, rows, numbers=True, classes=None):
+        """@p rows of text, each of one of @p classes; with @p numbers what begins with a digit
+        or a sign is one."""
         def cell(text):
             is_number = numbers and re.match(r"[-+]?\d", text)
             return f'<td{" class=number" if is_number else ""}>{html.escape(text)}</td>'
         self.add('<div class="wide"><table><tr>'
                  + "".join(f"<th>{html.escape(name)}</th>" for name in head) + "</tr>"
-                 + "".join("<tr>" + "".join(map(cell, row)) + "</tr>" for row in rows)
+                 + "".join(f'<tr class="{kind}">' + "".join(map(cell, row)) + "</tr>"
+                           for kind, row in zip(classes or [""] * len(rows), rows))
                  + "</table></div>")
 
     def path(self, name):

@@ -23,21 +23,11 @@ except ImportError as missing:
              f"and use the python3 that has them (this one is {sys.executable}).")
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from report_page import Page, write  # noqa: E402
 
 COLOURS = ["#1f4fa8", "#c0392b", "#2e8b57", "#762a83", "#b35806", "#1b1b1b"]
 MARKERS = "os^Dv*"
 SCALES = {"Pa": (1e-6, "MPa"), "s": (1., "s")}
-STYLE = """
-body { font: 16px/1.45 system-ui, sans-serif; max-width: 60rem; margin: 1.5rem auto;
-       padding: 0 1rem; color: #222; }
-svg { width: 100%; height: auto; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.2rem 0.6rem; border-bottom: 1px solid #ddd; text-align: right; }
-th:first-child, td:first-child { text-align: left; }
-.failed { color: #b2182b; }
-@media print { body { max-width: none; } tr { break-inside: avoid; } }
-"""
 
 
 def number(text):
@@ -173,38 +163,35 @@ def svg_of(figure):
     return text.getvalue()
 
 
-def table(study):
+def add_table(page, study):
     record = study.record
-    heads = [e["column"] for e in record["vary"]] + ["status"]
     figures = [c["column"] for c in record["collect"]]
-    lines = ["<tr>" + "".join(f"<th>{html.escape(words(h))}</th>"
-                              for h in heads + figures) + "</tr>"]
-    for member in record["members"]:
-        cells = list(member["values"].values()) + [member["status"]]
-        cells += [f"{member['figures'][c]:.6g}" if c in member["figures"] else ""
-                  for c in figures]
-        lines.append(f'<tr class="{member["status"]}">' + "".join(
-            f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>")
-    return "\n".join(lines)
+    head = [words(e["column"]) for e in record["vary"]] + ["status"] + list(map(words, figures))
+    rows = [list(member["values"].values()) + [member["status"]]
+            + [f"{member['figures'][c]:.6g}" if c in member["figures"] else ""
+               for c in figures] for member in record["members"]]
+    page.table(head, rows, classes=[member["status"] for member in record["members"]])
 
 
-def page(study, picture):
+def write_page(study, picture, path):
     record = study.record
     n_done = sum(m["status"] == "completed" for m in study.members)
     notes = [f'{m["name"]}: {m["reason"]}' for m in study.members if "reason" in m]
     notes += record["warnings"]
-    body = [f"<h1>Study {html.escape(record['title'])}</h1>",
-            f"<p>{n_done} of {len(study.members)} members completed, study "
-            f"{record['status']}; antiform {record['version']}.</p>"]
+    page = Page(None)
+    page.title = f"Study {record['title']}"
+    page.add(f"<h1>{html.escape(page.title)}</h1>")
+    page.add(f'<p class="state">antiform {html.escape(record["version"])}, {n_done} of '
+             f"{len(study.members)} members completed, study {record['status']}.</p>")
     if notes:
-        body.append("<ul>" + "".join(f'<li class="failed">{html.escape(n)}</li>'
-                                     for n in notes) + "</ul>")
-    body += [picture[picture.index("<svg"):] if picture else "",
-             f'<div class="wide"><table>{table(study)}</table></div>']
-    return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-            '<meta name="viewport" content="width=device-width">'
-            f"<title>Study {html.escape(record['title'])}</title><style>{STYLE}</style>"
-            "</head><body>\n" + "\n".join(body) + "\n</body></html>\n")
+        page.add('<ul class="warnings">' + "".join(f"<li>{html.escape(n)}</li>" for n in notes)
+                 + "</ul>")
+    if picture:
+        page.vectors(picture, "Points are runs, or means over seeds; lines closed forms where "
+                     "there are any.")
+    add_table(page, study)
+    write(page, path)
+    print(path)
 
 
 def write_whole(path, text):
@@ -223,7 +210,7 @@ def main():
     picture = svg_of(figure) if figure is not None else ""
     if picture:
         write_whole(os.path.join(directory, "study.svg"), picture)
-    write_whole(os.path.join(directory, "study.html"), page(study, picture))
+    write_page(study, picture, os.path.join(directory, "study.html"))
 
 
 if __name__ == "__main__":
