@@ -1,5 +1,8 @@
 #include "coupling/bridging_domain.h"
 
+#include "continuum/errors.h"
+
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -41,11 +44,6 @@ Vec2 contact_point(const discrete::Grains &grains,
          r1 * Vec2{joints.normal_x[j], joints.normal_y[j]};
 }
 
-dealii::Point<2> to_point(const Vec2 &v)
-{
-  return {v.x, v.y};
-}
-
 /// Lumped mass integral w_C rho N_J, at the points where the stiffness takes its weight.
 /// At the nodes, as the solid takes it, the vertices on the rim of the core would have
 /// the weight's floor for their mass, but not for their stiffness: a quarter of the step.
@@ -60,6 +58,8 @@ continuum::Vector weighted_mass(const continuum::ElasticSolid &solid)
   continuum::Vector mass = solid.make_vector();
   for (const auto &cell : solid.dof_handler().active_cell_iterators())
   {
+    if (!cell->is_locally_owned())
+      continue;
     values.reinit(cell);
     cell->get_dof_indices(dofs);
     const double density = solid.materials()[cell->material_id()].density;
@@ -80,14 +80,30 @@ continuum::Vector weighted_mass(const continuum::ElasticSolid &solid)
     for (unsigned int i = 0; i < dofs.size(); ++i)
       mass(dofs[i]) += share[i] * cell_mass / sum;
   }
+  mass.compress(dealii::VectorOperation::add);
   return mass;
 }
-std::vector<bool> tied_flags(const GrainTies &ties, const std::size_t n_grains)
+
+/// Grains of the overlap that are not tied, ascending.
+std::vector<std::int32_t> constrained_grains(const discrete::Grains &grains,
+                                             const OverlapWeight &weight,
+                                             const GrainTies &ties)
 {
-  std::vector<bool> is_tied(ties.empty() ? 0 : n_grains, false);
+  std::vector<bool> is_tied(grains.size(), false);
   for (const GrainTie &tie : ties.ties())
     is_tied[tie.grain] = true;
-  return is_tied;
+  std::vector<std::int32_t> constrained;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    if (weight.in_overlap(grains.reference(i)) && !is_tied[i])
+      constrained.push_back(static_cast<std::int32_t>(i));
+  return constrained;
+}
+
+
+[[noreturn]] void refuse_factors(const double n)
+{
+  throw NumericalError("bridging domain", "the constraint matrix could not be solved", n,
+                       0.);
 }
 } // namespace
 
@@ -110,26 +126,26 @@ BridgingDomain::BridgingDomain(const discrete::Grains &grains,
     : weight_(std::move(weight))
     , ties_(grains, solid, options.tied_grains)
     , mesh_mass_(weighted_mass(solid))
-    , rows_(constraint_rows(grains,
-                            solid,
-                            weight_,
-                            smallest_mass,
-                            options.multipliers,
-                            tied_flags(ties_, grains.size())))
-    , grain_columns_(transposed(rows_.grains, rows_.overlap_grains.size()))
-    , mesh_columns_(transposed(rows_.nodes, rows_.node_dofs.size()))
-    , node_of_dof_(solid.dof_handler().n_dofs(), -1)
-    , multiplier_(n_multipliers(), 0.)
+    , node_of_dof_(solid.partitioner().locally_owned_size(), -1)
+    , communicator_(solid.dof_handler().get_communicator())
+    , is_alone_(dealii::Utilities::MPI::n_mpi_processes(communicator_) == 1)
 {
+  const std::vector<GrainPlace> places =
+      grain_places(grains, solid, constrained_grains(grains, weight_, ties_));
+  rows_ = constraint_rows(grains, solid, places, smallest_mass, options.multipliers);
+  grain_columns_ = transposed(rows_.grains, rows_.overlap_grains.size());
+  mesh_columns_ = transposed(rows_.nodes, rows_.node_dofs.size());
+  multiplier_.assign(n_multipliers(), 0.);
   for (std::size_t k = 0; k < rows_.node_dofs.size(); ++k)
     for (const std::uint32_t dof : rows_.node_dofs[k])
       node_of_dof_[dof] = static_cast<std::int32_t>(k);
-  weigh_masses(grains, joints, solid);
+  weigh_masses(grains, joints, solid, places);
 }
 
 void BridgingDomain::weigh_masses(const discrete::Grains &grains,
                                   const discrete::Joints &joints,
-                                  const continuum::ElasticSolid &solid)
+                                  const continuum::ElasticSolid &solid,
+                                  const std::vector<GrainPlace> &places)
 {
   mu_.resize(grains.size());
   for (std::size_t i = 0; i < grains.size(); ++i)
@@ -142,16 +158,16 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
 
   const continuum::Vector whole = mesh_mass_;
   // The surplus is the mass of half a grain layer; reflection triples if it stays.
-  for (const std::int32_t i : rows_.overlap_grains)
+  for (const GrainPlace &place : places)
   {
+    const std::int32_t i = place.grain;
     const double surplus = grains.mass[i] * (mu_[i] - at_centre[i]);
-    const continuum::PointEvaluation shape =
-        solid.shape_values(to_point(grains.reference(i)));
-    for (std::size_t k = 0; k < shape.value.size(); ++k)
-    {
-      mesh_mass_(shape.dof_x[k]) -= surplus * shape.value[k];
-      mesh_mass_(shape.dof_y[k]) -= surplus * shape.value[k];
-    }
+    for (std::size_t k = 0; k < place.shape.value.size(); ++k)
+      if (solid.locally_owned().is_element(place.shape.dof_x[k]))
+      {
+        mesh_mass_(place.shape.dof_x[k]) -= surplus * place.shape.value[k];
+        mesh_mass_(place.shape.dof_y[k]) -= surplus * place.shape.value[k];
+      }
   }
   for (const auto dof : solid.locally_owned())
     mesh_mass_(dof) = std::max(mesh_mass_(dof), 0.5 * whole(dof));
@@ -159,14 +175,14 @@ void BridgingDomain::weigh_masses(const discrete::Grains &grains,
     for (const GrainTie::Node &node : tie.nodes)
     {
       const double m = grains.mass[tie.grain] * mu_[tie.grain] * node.mass_share;
-      mesh_mass_(node.dof_x) += m;
-      mesh_mass_(node.dof_y) += m;
+      mesh_mass_.local_element(node.dof_x) += m;
+      mesh_mass_.local_element(node.dof_y) += m;
     }
 }
 
 bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
 {
-  if (!solver_)
+  if (!solver_ && !distributed_)
     return false;
   for (std::size_t k = 0; k < rows_.overlap_grains.size(); ++k)
     if (grain_inverse_mass_[k] != grains.inverse_mass[rows_.overlap_grains[k]])
@@ -177,39 +193,71 @@ bool BridgingDomain::is_factorised_for(const discrete::Grains &grains) const
 void BridgingDomain::factorise(const discrete::Grains &grains,
                                const continuum::Vector &inverse_mass)
 {
-  const auto n = static_cast<int>(rows_.grains.n_rows());
   grain_inverse_mass_.resize(rows_.overlap_grains.size());
   for (std::size_t k = 0; k < rows_.overlap_grains.size(); ++k)
     grain_inverse_mass_[k] = grains.inverse_mass[rows_.overlap_grains[k]];
   node_inverse_mass_.resize(rows_.node_dofs.size());
   for (std::size_t k = 0; k < rows_.node_dofs.size(); ++k)
-    node_inverse_mass_[k] = {inverse_mass(rows_.node_dofs[k][0]),
-                             inverse_mass(rows_.node_dofs[k][1])};
+    node_inverse_mass_[k] = {inverse_mass.local_element(rows_.node_dofs[k][0]),
+                             inverse_mass.local_element(rows_.node_dofs[k][1])};
 
+  const auto n = static_cast<Eigen::Index>(rows_.grains.n_rows());
+  const auto name_of_row = [this, n](const Eigen::Index row)
+  { return rows_.names[row % n] + (row < n ? ", x" : ", y"); };
+  if (is_alone_)
+  {
+    solver_.emplace(constraint_matrix<Eigen::SparseMatrix<double>>(), name_of_row);
+    return;
+  }
+  std::vector<int> own;
+  for (int row = 0; row < 2 * n; ++row)
+    if (owns_row(row % n))
+      own.push_back(row);
+  distributed_ = std::make_unique<DistributedSystem>(
+      constraint_matrix<DistributedSystem::Matrix>(), own, communicator_);
+  demand_regular(distributed_->on_first_rank(), name_of_row, communicator_);
+  if (!distributed_->factorise())
+    refuse_factors(2 * n);
+}
+
+template <class Matrix>
+Matrix BridgingDomain::constraint_matrix() const
+{
+  const auto n = static_cast<int>(rows_.grains.n_rows());
   std::vector<Eigen::Triplet<double>> triplets;
   const auto add_products = [&](const SparseRows &columns, const int offset,
+                                const bool in_own_rows,
                                 const std::function<double(std::size_t)> &mass_inverse)
   {
     for (std::size_t c = 0; c < columns.n_rows(); ++c)
     {
       const double m = mass_inverse(c);
       for (std::int32_t a = columns.begin[c]; a < columns.begin[c + 1]; ++a)
-        for (std::int32_t b = columns.begin[c]; b < columns.begin[c + 1]; ++b)
+        for (std::int32_t b = columns.begin[c];
+             b < columns.begin[c + 1] && (!in_own_rows || owns_row(columns.column[a]));
+             ++b)
           triplets.emplace_back(offset + columns.column[a], offset + columns.column[b],
                                 columns.value[a] * m * columns.value[b]);
     }
   };
   for (const int component : {0, 1})
   {
-    add_products(grain_columns_, component * n,
+    add_products(grain_columns_, component * n, true,
                  [&](const std::size_t c) { return grain_inverse_mass_[c]; });
-    add_products(mesh_columns_, component * n,
+    add_products(mesh_columns_, component * n, false,
                  [&](const std::size_t c) { return node_inverse_mass_[c][component]; });
   }
-  Eigen::SparseMatrix<double> matrix(2 * n, 2 * n);
+  Matrix matrix(2 * n, 2 * n);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
-  solver_.emplace(matrix, [this, n](const Eigen::Index row)
-                  { return rows_.names[row % n] + (row < n ? ", x" : ", y"); });
+  return matrix;
+}
+
+void BridgingDomain::solve(std::vector<double> &b) const
+{
+  if (is_alone_)
+    solver_->solve(b);
+  else if (!distributed_->solve(b.data()))
+    refuse_factors(static_cast<double>(b.size()));
 }
 
 template <class GrainField, class MeshField>
@@ -223,9 +271,10 @@ void BridgingDomain::apply(const GrainField &grain_field,
   for (std::int64_t r = 0; r < n; ++r)
   {
     Vec2 sum;
-    for (std::int32_t k = rows_.grains.begin[r]; k < rows_.grains.begin[r + 1]; ++k)
-      sum += rows_.grains.value[k] *
-             grain_field(rows_.overlap_grains[rows_.grains.column[k]]);
+    if (owns_row(r))
+      for (std::int32_t k = rows_.grains.begin[r]; k < rows_.grains.begin[r + 1]; ++k)
+        sum += rows_.grains.value[k] *
+               grain_field(rows_.overlap_grains[rows_.grains.column[k]]);
     for (std::int32_t k = rows_.nodes.begin[r]; k < rows_.nodes.begin[r + 1]; ++k)
       sum += rows_.nodes.value[k] * mesh_field(rows_.node_dofs[rows_.nodes.column[k]]);
     b[r] = sum.x;
@@ -267,7 +316,7 @@ void BridgingDomain::project(discrete::Grains &grains, continuum::Vector &veloci
           return Vec2{v[dofs[0]], v[dofs[1]]};
         },
         multiplier_);
-  solver_->solve(multiplier_);
+  solve(multiplier_);
   apply_transposed(
       multiplier_,
       [&](const std::int64_t c, const Vec2 &impulse)
@@ -312,7 +361,7 @@ void BridgingDomain::constrain_forces(const discrete::Grains &grains,
         return Vec2{Mi[dofs[0]] * F[dofs[0]], Mi[dofs[1]] * F[dofs[1]]};
       },
       L);
-  solver_->solve(L);
+  solve(L);
   apply_transposed(
       L,
       [&](const std::int64_t c, const Vec2 &force)
@@ -340,6 +389,8 @@ double BridgingDomain::displacement_gap(const discrete::Grains &grains,
         return Vec2{u[dofs[0]], u[dofs[1]]};
       },
       g);
+  if (!is_alone_)
+    dealii::Utilities::MPI::sum(g, communicator_, g);
   double largest = 0.;
   const std::size_t n = rows_.grains.n_rows();
   for (std::size_t r = 0; r < n; ++r)

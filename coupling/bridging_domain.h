@@ -2,12 +2,14 @@
 
 #include "continuum/elastic_solid.h"
 #include "coupling/constraint_solver.h"
+#include "coupling/distributed_system.h"
 #include "coupling/grain_ties.h"
 #include "coupling/multiplier_space.h"
 #include "coupling/overlap_weight.h"
 #include "discrete/grains.h"
 #include "discrete/joints.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,7 +29,12 @@ struct BridgingOptions
 ///   g_J = sum_i m_i N_J(x_i) (d_i - sum_K N_K(x_i) U_K) = 0,
 /// the sum going over the grains of the overlap with their real masses; other spaces of
 /// multipliers take other functions than N_J. Rotations are free. Topology and reference
-/// positions are those of construction. One rank.
+/// positions are those of construction.
+///
+/// On several ranks every rank has all grains, with the same bits, and its part of the
+/// mesh. A multiplier belongs to the rank that owns its vertex; S is assembled and
+/// factorised by all, and every rank gets all of L, for its grains. Construction and all
+/// that takes vectors of the mesh are collective there.
 class BridgingDomain
 {
 public:
@@ -62,8 +69,8 @@ public:
   /// Project half-step velocities onto the constraint: v -= Mi C^T L, S L = C v;
   /// tied grains get the velocities of the mesh.
   void project(discrete::Grains &grains, continuum::Vector &velocity);
-  /// Impulses of the last project() on a mesh dof, (C_C^T L) [N s]; dofs without
-  /// multipliers: 0. The reaction of a prescribed dof needs it.
+  /// Impulses of the last project() on a mesh dof, (C_C^T L) [N s], by local
+  /// index; dofs without multipliers: 0. The reaction of a prescribed dof needs it.
   double mesh_impulse(std::size_t dof) const;
 
   /// Constrained forces: @p fx, @p fy of the grains and @p mesh_force become
@@ -83,20 +90,30 @@ public:
   const std::vector<std::int32_t> &overlap_grains() const { return rows_.overlap_grains; }
   const OverlapWeight &weight() const { return weight_; }
   /// Constraint rows of the x components (those of y have the same values): multipliers
-  /// by grains, and by mesh nodes; node k has the dofs node_dofs()[k] (x, y).
+  /// by grains, and by the mesh nodes of this rank; node k has the dofs node_dofs()[k]
+  /// (x, y; local indices).
   const SparseRows &grain_rows() const { return rows_.grains; }
   const SparseRows &mesh_rows() const { return rows_.nodes; }
   const std::vector<std::array<std::uint32_t, 2>> &node_dofs() const
   {
     return rows_.node_dofs;
   }
+  /// Whether the multipliers of a row belong to this rank.
+  bool owns_row(const std::size_t row) const { return rows_.is_own[row]; }
 
 private:
   void weigh_masses(const discrete::Grains &grains,
                     const discrete::Joints &joints,
-                    const continuum::ElasticSolid &solid);
-  /// b = C (grain field, mesh field): x multipliers, then y. The fields are functions of
-  /// a grain's number and of a node's dofs.
+                    const continuum::ElasticSolid &solid,
+                    const std::vector<GrainPlace> &places);
+  /// This rank's share of S: its nodes, and the grains in its rows.
+  template <class Matrix>
+  Matrix constraint_matrix() const;
+  /// Overwrite this rank's share of b by all of L.
+  void solve(std::vector<double> &b) const;
+  /// This rank's share of b = C (grain field, mesh field), by its nodes and by the grains
+  /// in its rows: x multipliers, then y. The fields are functions of a grain's number and
+  /// of a node's dofs.
   template <class GrainField, class MeshField>
   void apply(const GrainField &grain_field,
              const MeshField &mesh_field,
@@ -117,7 +134,10 @@ private:
   std::vector<std::array<double, 2>> node_inverse_mass_;
   std::vector<std::int32_t> node_of_dof_; ///< index into node_dofs(), or -1
   std::vector<double> multiplier_;        ///< L of the last projection
-  std::optional<ConstraintSolver> solver_;
+  MPI_Comm communicator_;
+  bool is_alone_; ///< on one rank
+  std::optional<ConstraintSolver> solver_;         ///< on one rank
+  std::unique_ptr<DistributedSystem> distributed_; ///< on several
 };
 
 /// Weight of a joint: w_D at its contact point.

@@ -1,12 +1,18 @@
 #include "coupling/multiplier_space.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
+#include <deal.II/grid/cell_id.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 namespace antiform::coupling
 {
@@ -16,26 +22,71 @@ namespace
 using Place = std::array<int, 2>;
 using Corners = std::array<std::uint32_t, 4>; ///< x dofs, counter-clockwise
 
-/// Cells all of whose vertices are given.
-std::vector<Corners> cells_between(const continuum::ElasticSolid &solid,
-                                   const std::vector<std::uint32_t> &vertices)
+/// Places of vertices by x dof [m].
+using Points = std::map<std::uint32_t, dealii::Point<2>>;
+
+/// A cell as its rank knows it.
+struct GivenCell
+{
+  int level = 0;
+  dealii::CellId id;
+  Corners corners{};
+  std::array<dealii::Point<2>, 4> points;
+
+  template <class Archive>
+  void serialize(Archive &archive, const unsigned int /*version*/)
+  {
+    archive & level & id & corners & points;
+  }
+  bool operator<(const GivenCell &other) const
+  {
+    return std::tie(level, id) < std::tie(other.level, other.id);
+  }
+};
+
+/// This rank's cells all of whose vertices are given.
+std::vector<GivenCell> own_cells_between(const continuum::ElasticSolid &solid,
+                                    const std::vector<std::uint32_t> &vertices)
 {
   const std::set<std::uint32_t> known(vertices.begin(), vertices.end());
-  std::vector<Corners> cells;
+  std::vector<GivenCell> cells;
   for (const auto &cell : solid.dof_handler().active_cell_iterators())
   {
-    Corners corners;
+    if (!cell->is_locally_owned())
+      continue;
+    GivenCell own;
     constexpr std::array<unsigned int, 4> counter_clockwise{{0, 1, 3, 2}};
     bool all = true;
     for (unsigned int v = 0; v < 4; ++v)
     {
-      corners[v] =
+      own.corners[v] =
           static_cast<std::uint32_t>(cell->vertex_dof_index(counter_clockwise[v], 0));
-      all = all && known.count(corners[v]) > 0;
+      own.points[v] = solid.support_point(own.corners[v]);
+      all = all && known.count(own.corners[v]) > 0;
     }
-    if (all)
-      cells.push_back(corners);
+    if (!all)
+      continue;
+    own.level = cell->level();
+    own.id = cell->id();
+    cells.push_back(own);
   }
+  return cells;
+}
+
+/// Those of all ranks, in an order that does not depend on the ranks.
+std::vector<GivenCell> cells_between(const continuum::ElasticSolid &solid,
+                                const std::vector<std::uint32_t> &vertices)
+{
+  namespace mpi = dealii::Utilities::MPI;
+  std::vector<GivenCell> cells = own_cells_between(solid, vertices);
+  const MPI_Comm communicator = solid.dof_handler().get_communicator();
+  if (mpi::n_mpi_processes(communicator) == 1)
+    return cells;
+  const auto of_ranks = mpi::all_gather(communicator, cells);
+  cells.clear();
+  for (const std::vector<GivenCell> &of_rank : of_ranks)
+    cells.insert(cells.end(), of_rank.begin(), of_rank.end());
+  std::sort(cells.begin(), cells.end());
   return cells;
 }
 
@@ -57,7 +108,7 @@ struct Patch
 
 /// Let the corners of @p cell follow from two of them that have their places.
 /// \return whether there were two
-bool place_corners(const continuum::ElasticSolid &solid,
+bool place_corners(const Points &points,
                    const Corners &cell,
                    std::map<std::uint32_t, Place> &place)
 {
@@ -69,20 +120,19 @@ bool place_corners(const continuum::ElasticSolid &solid,
     // The cell lies to the left of its edge.
     const Place a = one->second, b = two->second, in{{a[1] - b[1], b[0] - a[0]}};
     if (std::abs(in[0]) + std::abs(in[1]) != 1)
-      refuse_mesh(solid.support_point(cell[v]));
+      refuse_mesh(points.at(cell[v]));
     const Place opposite{{b[0] + in[0], b[1] + in[1]}},
         last{{a[0] + in[0], a[1] + in[1]}};
     for (const auto &[corner, wanted] :
          {std::pair{cell[(v + 2) % 4], opposite}, std::pair{cell[(v + 3) % 4], last}})
       if (place.try_emplace(corner, wanted).first->second != wanted)
-        refuse_mesh(solid.support_point(corner));
+        refuse_mesh(points.at(corner));
     return true;
   }
   return false;
 }
 
-std::vector<Patch> patches_of(const continuum::ElasticSolid &solid,
-                              const std::vector<Corners> &cells)
+std::vector<Patch> patches_of(const Points &points, const std::vector<Corners> &cells)
 {
   std::map<std::uint32_t, std::vector<std::size_t>> at_vertex;
   for (std::size_t c = 0; c < cells.size(); ++c)
@@ -102,7 +152,7 @@ std::vector<Patch> patches_of(const continuum::ElasticSolid &solid,
     {
       const std::size_t c = open.back();
       open.pop_back();
-      if (is_done[c] || !place_corners(solid, cells[c], patch.place))
+      if (is_done[c] || !place_corners(points, cells[c], patch.place))
         continue; // touched at one corner so far; a cell beside it will come back to it
       is_done[c] = true;
       patch.cells.push_back(cells[c]);
@@ -118,7 +168,7 @@ std::vector<Patch> patches_of(const continuum::ElasticSolid &solid,
 
 /// Where the lines of one direction lie, by the mean length of the edges between them
 /// [m].
-std::map<int, double> line_positions(const continuum::ElasticSolid &solid,
+std::map<int, double> line_positions(const Points &points,
                                      const Patch &patch,
                                      const unsigned int direction)
 {
@@ -131,7 +181,7 @@ std::map<int, double> line_positions(const continuum::ElasticSolid &solid,
       if (a == b)
         continue;
       auto &[sum, n] = gap[std::min(a, b)];
-      sum += solid.support_point(one).distance(solid.support_point(two));
+      sum += points.at(one).distance(points.at(two));
       ++n;
     }
   std::map<int, double> position;
@@ -193,18 +243,26 @@ CoarseVertices coarsened_vertices(const continuum::ElasticSolid &solid,
   std::map<std::uint32_t, std::size_t> number;
   for (std::size_t v = 0; v < vertices.size(); ++v)
     number[vertices[v]] = v;
-  const std::vector<Patch> patches = patches_of(solid, cells_between(solid, vertices));
+  Points points;
+  std::vector<Corners> cells;
+  for (const GivenCell &cell : cells_between(solid, vertices))
+  {
+    cells.push_back(cell.corners);
+    for (unsigned int v = 0; v < 4; ++v)
+      points[cell.corners[v]] = cell.points[v];
+  }
+  const std::vector<Patch> patches = patches_of(points, cells);
   for (const Patch &patch : patches)
   {
     const std::array<LineShares, 2> lines{
-        {line_shares(line_positions(solid, patch, 0), spacing),
-         line_shares(line_positions(solid, patch, 1), spacing)}};
+        {line_shares(line_positions(points, patch, 0), spacing),
+         line_shares(line_positions(points, patch, 1), spacing)}};
     std::map<Place, std::int32_t> coarse_number;
     for (const auto &[vertex, place] : patch.place)
     {
       std::vector<CoarseVertices::Share> &shares = coarse.shares[number.at(vertex)];
       if (!shares.empty())
-        refuse_mesh(solid.support_point(vertex)); // two patches meet in a point
+        refuse_mesh(points.at(vertex)); // two patches meet in a point
       for (const auto &[i, wx] : lines[0].at(place[0]))
         for (const auto &[j, wy] : lines[1].at(place[1]))
           if (wx * wy > 1e-12)

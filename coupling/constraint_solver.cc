@@ -2,6 +2,8 @@
 
 #include "continuum/errors.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <Eigen/SparseCholesky>
 
 #include <Amesos.h>
@@ -12,6 +14,7 @@
 #include <Epetra_MultiVector.h>
 #include <Epetra_SerialComm.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 
@@ -62,8 +65,14 @@ std::vector<std::vector<int>> connected_parts(const Eigen::SparseMatrix<double> 
   return parts;
 }
 
-void demand_regular(const Eigen::SparseMatrix<double> &matrix,
-                    const std::function<std::string(Eigen::Index)> &name_of_row)
+struct Pivot
+{
+  Eigen::Index row = 0;
+  double ratio = 0.; ///< to the mean; not positive without factors
+};
+
+/// The smallest pivot.
+Pivot least_pivot(const Eigen::SparseMatrix<double> &matrix)
 {
   // The shift, far below the limit, keeps a pivot from being exactly 0, which would end
   // the factorisation before the other pivots are known.
@@ -73,24 +82,36 @@ void demand_regular(const Eigen::SparseMatrix<double> &matrix,
   const Eigen::VectorXd pivots = factor.vectorD();
   Eigen::Index smallest = 0;
   const double least = pivots.minCoeff(&smallest), mean = pivots.mean();
-  if (factor.info() == Eigen::Success && least > 1e-10 * mean)
+  const double ratio = factor.info() == Eigen::Success ? least / mean
+                                                       : std::min(0., least / mean);
+  return {factor.permutationPinv().indices()[smallest], ratio};
+}
+} // namespace
+
+void demand_regular(const Eigen::SparseMatrix<double> &matrix,
+                    const std::function<std::string(Eigen::Index)> &name_of_row,
+                    const MPI_Comm communicator)
+{
+  Pivot found;
+  if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    found = least_pivot(matrix);
+  found = dealii::Utilities::MPI::broadcast(communicator, found);
+  if (found.ratio > 1e-10)
     return;
-  const Eigen::Index row = factor.permutationPinv().indices()[smallest];
   throw NumericalError(
       "bridging domain",
-      "multiplier space too rich at " + name_of_row(row) +
+      "multiplier space too rich at " + name_of_row(found.row) +
           ": the constraint matrix is singular there. Use larger cells "
           "(Matrix / Cell size ratio), a wider overlap or coarsened multipliers; "
           "smallest pivot over the mean",
-      least / mean, 1e-10);
+      found.ratio, 1e-10);
 }
-} // namespace
 
 ConstraintSolver::ConstraintSolver(
     const Eigen::SparseMatrix<double> &matrix,
     const std::function<std::string(Eigen::Index)> &name_of_row)
 {
-  demand_regular(matrix, name_of_row);
+  demand_regular(matrix, name_of_row, MPI_COMM_SELF);
   std::vector<int> local(matrix.rows(), -1);
   for (const std::vector<int> &rows : connected_parts(matrix))
   {

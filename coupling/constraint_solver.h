@@ -2,6 +2,8 @@
 
 #include <Eigen/SparseCore>
 
+#include <mpi.h>
+
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,15 +11,22 @@
 
 namespace antiform::coupling
 {
+/// Throws NumericalError naming the offending row when the smallest pivot of S is below
+/// 1e-10 of the mean: the multiplier space is too rich. Collective: S is looked at on the
+/// first rank, what the others give is not.
+void demand_regular(const Eigen::SparseMatrix<double> &matrix,
+                    const std::function<std::string(Eigen::Index)> &name_of_row,
+                    MPI_Comm communicator);
+
 /// Solves S L = b for the symmetric positive definite constraint matrix, factorised once
-/// by Trilinos (Amesos, KLU). Parts of S without connection (the overlaps above and below
-/// the layer, x and y) are factorised apart and solved by different threads; every part
-/// is solved by one thread, so the result has the same bits for any number of threads.
+/// by Trilinos (Amesos, KLU), on one rank. Parts of S without connection (the overlaps
+/// above and below the layer, x and y) are factorised apart and solved by different
+/// threads; every part is solved by one thread, so the result has the same bits for any
+/// number of threads.
 class ConstraintSolver
 {
 public:
-  /// Throws NumericalError naming the offending rows (through @p name_of_row) when the
-  /// smallest pivot is below 1e-10 of the mean: the multiplier space is too rich.
+  /// Throws as demand_regular().
   ConstraintSolver(const Eigen::SparseMatrix<double> &matrix,
                    const std::function<std::string(Eigen::Index)> &name_of_row);
   ~ConstraintSolver();

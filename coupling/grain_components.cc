@@ -23,6 +23,8 @@ void GrainMotion::run(const Stage stage, const Clock &clock)
 
 void GrainMotion::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   energies.kinetic += discrete::kinetic_energy(state_.grains, before_);
 }
 
@@ -66,6 +68,8 @@ void Bonds::run(const Stage, const Clock &clock)
 
 void Bonds::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   const JointEnergies joints = joint_energies(state_.grains, state_.joints);
   energies.strain_grains += joints.strain;
   energies.slip += joints.slip;
@@ -191,6 +195,8 @@ void GrainContacts::run(const Stage, const Clock &clock)
 
 void GrainContacts::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   const ContactEnergies contact = contact_energies(state_.grains, contacts_);
   energies.strain_grains += contact.strain;
   energies.slip += contact.slip;
@@ -246,6 +252,8 @@ void SmoothJointForces::run(const Stage, const Clock &clock)
 
 void SmoothJointForces::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   const JointEnergies joints = smooth_joint_energies(joints_);
   energies.strain_grains += joints.strain;
   energies.slip += joints.slip;
@@ -325,6 +333,8 @@ void GrainGravity::run(const Stage, const Clock &)
 
 void GrainGravity::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   for (std::size_t i = 0; i < force_.size(); ++i)
     energies.boundary_work -= force_[i] * state_.grains.displacement_y[i];
 }
@@ -342,6 +352,8 @@ void GrainLoads::run(const Stage, const Clock &)
 
 void GrainLoads::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   const Grains &grains = state_.grains;
   double work = 0.;
   for (const GrainLoad &load : loads_)
@@ -370,6 +382,8 @@ void GrainBase::run(const Stage, const Clock &)
 
 void GrainBase::add_energies(Energies &energies) const
 {
+  if (!state_.tells_energies)
+    return;
   for (const Support &support : supports_)
     if (!std::isinf(support.stiffness))
     {

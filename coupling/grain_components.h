@@ -20,6 +20,9 @@ struct GrainState
   std::vector<discrete::Crack> cracks;
   std::size_t cracks_recorded = 0; ///< of them already written by the recorder
   bool breaking = true;            ///< false: strengths are not looked at
+  /// Whether this rank tells the energies of the grains. All ranks have the grains, one
+  /// tells.
+  bool tells_energies = true;
 };
 
 /// Kick and drift of the grains; keeps the velocities before the kick at a sample. Grains

@@ -2,6 +2,7 @@
 
 #include "continuum/point_locator.h"
 #include "coupling/grain_components.h"
+#include "coupling/grain_places.h"
 #include "coupling/mesh_components.h"
 #include "coupling/static_system.h"
 
@@ -119,44 +120,80 @@ std::vector<std::int32_t> unsupported_grains(const discrete::Grains &grains,
   return result;
 }
 
+namespace
+{
+/// The sum over ranks, by the first: other ways may round differently on each rank.
+std::vector<double> summed_with_equal_bits(std::vector<double> share,
+                                           const MPI_Comm communicator)
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
+    return share;
+  const auto n = static_cast<int>(share.size());
+  std::vector<double> sum(share.size());
+  MPI_Reduce(share.data(), sum.data(), n, MPI_DOUBLE, MPI_SUM, 0, communicator);
+  MPI_Bcast(sum.data(), n, MPI_DOUBLE, 0, communicator);
+  return sum;
+}
+
+/// With all nodes of the cell, by global dofs.
+GrainTie make_tie(const discrete::Grains &grains,
+                  const continuum::ElasticSolid &solid,
+                  const continuum::PointLocator &locator,
+                  const std::int32_t grain)
+{
+  const auto &fe = solid.fe();
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  const dealii::Point<2> x(grains.reference_x[grain], grains.reference_y[grain]);
+  const auto place = locator.find(x);
+  const dealii::DoFHandler<2>::active_cell_iterator cell(
+      &solid.dof_handler().get_triangulation(), place.cell->level(), place.cell->index(),
+      &solid.dof_handler());
+  cell->get_dof_indices(dofs);
+  dealii::FEValues<2> values(fe, dealii::Quadrature<2>(place.unit),
+                             dealii::update_values | dealii::update_gradients);
+  values.reinit(cell);
+  const continuum::PointEvaluation vertex = solid.vertex_values(x);
+  GrainTie tie{grain, {}};
+  for (unsigned int k = 0; k < fe.base_element(0).n_dofs_per_cell(); ++k)
+  {
+    const unsigned int c = fe.component_to_system_index(0, k);
+    GrainTie::Node node{
+        static_cast<std::uint32_t>(dofs[c]),
+        static_cast<std::uint32_t>(dofs[fe.component_to_system_index(1, k)]),
+        values.shape_value(c, 0), values.shape_grad(c, 0)[0],
+        values.shape_grad(c, 0)[1]};
+    for (std::size_t v = 0; v < vertex.value.size(); ++v)
+      if (vertex.dof_x[v] == node.dof_x)
+        node.mass_share = vertex.value[v];
+    tie.nodes.push_back(node);
+  }
+  return tie;
+}
+} // namespace
+
 GrainTies::GrainTies(const discrete::Grains &grains,
                      const continuum::ElasticSolid &solid,
                      std::vector<std::int32_t> tied)
+    : communicator_(solid.dof_handler().get_communicator())
 {
   if (tied.empty())
     return;
   std::sort(tied.begin(), tied.end());
   tied.erase(std::unique(tied.begin(), tied.end()), tied.end());
-  const auto &triangulation = solid.dof_handler().get_triangulation();
-  const continuum::PointLocator locator(triangulation);
-  const auto &fe = solid.fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-  for (const std::int32_t i : tied)
+  const continuum::PointLocator locator(solid.dof_handler().get_triangulation());
+  ties_ = looked_up<GrainTie>(grains, solid, tied, [&](const std::int32_t grain)
+                              { return make_tie(grains, solid, locator, grain); });
+  for (GrainTie &tie : ties_)
   {
-    const dealii::Point<2> x(grains.reference_x[i], grains.reference_y[i]);
-    const auto place = locator.find(x);
-    const dealii::DoFHandler<2>::active_cell_iterator cell(
-        &triangulation, place.cell->level(), place.cell->index(), &solid.dof_handler());
-    cell->get_dof_indices(dofs);
-    dealii::FEValues<2> values(fe, dealii::Quadrature<2>(place.unit),
-                               dealii::update_values | dealii::update_gradients);
-    values.reinit(cell);
-    const continuum::PointEvaluation vertex = solid.vertex_values(x);
-    GrainTie tie{i, {}};
-    for (unsigned int k = 0; k < fe.base_element(0).n_dofs_per_cell(); ++k)
-    {
-      const unsigned int c = fe.component_to_system_index(0, k);
-      GrainTie::Node node{
-          static_cast<std::uint32_t>(dofs[c]),
-          static_cast<std::uint32_t>(dofs[fe.component_to_system_index(1, k)]),
-          values.shape_value(c, 0), values.shape_grad(c, 0)[0],
-          values.shape_grad(c, 0)[1]};
-      for (std::size_t v = 0; v < vertex.value.size(); ++v)
-        if (vertex.dof_x[v] == node.dof_x)
-          node.mass_share = vertex.value[v];
-      tie.nodes.push_back(node);
-    }
-    ties_.push_back(std::move(tie));
+    std::vector<GrainTie::Node> own;
+    for (GrainTie::Node node : tie.nodes)
+      if (solid.locally_owned().is_element(node.dof_x))
+      {
+        node.dof_x = solid.partitioner().global_to_local(node.dof_x);
+        node.dof_y = solid.partitioner().global_to_local(node.dof_y);
+        own.push_back(node);
+      }
+    tie.nodes = std::move(own);
   }
 }
 
@@ -186,20 +223,24 @@ void GrainTies::move_forces(discrete::Grains &grains, continuum::Vector &mesh_fo
 void GrainTies::follow(discrete::Grains &grains,
                        const continuum::Vector &mesh_velocity) const
 {
+  if (ties_.empty())
+    return;
   const double *const V = mesh_velocity.begin();
-  for (const GrainTie &tie : ties_)
-  {
-    double vx = 0., vy = 0., spin = 0.;
-    for (const GrainTie::Node &node : tie.nodes)
+  std::vector<double> share(3 * ties_.size(), 0.); // velocity, spin
+  for (std::size_t t = 0; t < ties_.size(); ++t)
+    for (const GrainTie::Node &node : ties_[t].nodes)
     {
       const auto turn = turn_of(node);
-      vx += node.value * V[node.dof_x];
-      vy += node.value * V[node.dof_y];
-      spin += turn[0] * V[node.dof_x] + turn[1] * V[node.dof_y];
+      share[3 * t] += node.value * V[node.dof_x];
+      share[3 * t + 1] += node.value * V[node.dof_y];
+      share[3 * t + 2] += turn[0] * V[node.dof_x] + turn[1] * V[node.dof_y];
     }
-    grains.velocity_x[tie.grain] = vx;
-    grains.velocity_y[tie.grain] = vy;
-    grains.spin[tie.grain] = spin;
+  const std::vector<double> all = summed_with_equal_bits(share, communicator_);
+  for (std::size_t t = 0; t < ties_.size(); ++t)
+  {
+    grains.velocity_x[ties_[t].grain] = all[3 * t];
+    grains.velocity_y[ties_[t].grain] = all[3 * t + 1];
+    grains.spin[ties_[t].grain] = all[3 * t + 2];
   }
 }
 

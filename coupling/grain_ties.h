@@ -26,18 +26,31 @@ std::vector<std::int32_t> unsupported_grains(const discrete::Grains &grains,
                                              const discrete::Joints &joints,
                                              const OverlapWeight &weight);
 
-/// A grain that follows the mesh in all: d = sum_K N_K U_K, theta = 1/2 curl of it.
+/// A grain that follows the mesh in all: d = sum_K N_K U_K, theta = 1/2 curl of it. Every
+/// rank has all ties, with the nodes that it owns.
 struct GrainTie
 {
   struct Node
   {
-    std::uint32_t dof_x, dof_y;
+    std::uint32_t dof_x, dof_y; ///< local indices
     double value;          ///< N_K(x_i) [-]
     double by_x, by_y;     ///< its derivatives [1/m]
     double mass_share = 0; ///< of the grain's mass; not negative, also under Q2 cells [-]
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive & dof_x & dof_y & value & by_x & by_y & mass_share;
+    }
   };
   std::int32_t grain;
   std::vector<Node> nodes;
+
+  template <class Archive>
+  void serialize(Archive &archive, const unsigned int /*version*/)
+  {
+    archive & grain & nodes;
+  }
 };
 
 /// Grains tied to the mesh. They have no inertia of their own: their weighted mass
@@ -49,7 +62,7 @@ class GrainTies
 {
 public:
   GrainTies() = default;
-  /// Throws std::out_of_range when a grain lies outside of the mesh.
+  /// Throws std::out_of_range when a grain lies outside of the mesh. Collective.
   GrainTies(const discrete::Grains &grains,
             const continuum::ElasticSolid &solid,
             std::vector<std::int32_t> tied);
@@ -62,17 +75,18 @@ public:
   void hold(discrete::Grains &grains) const;
   /// Add the grains' forces and torques to the nodes; the grains' become zero.
   void move_forces(discrete::Grains &grains, continuum::Vector &mesh_force) const;
-  /// Velocities and spins of the grains from those of the nodes.
+  /// Velocities and spins of the grains from those of the nodes. Collective.
   void follow(discrete::Grains &grains, const continuum::Vector &mesh_velocity) const;
 
   /// Per dof of the mesh sum |K| over the row that the tied grains' joints add to it, for
-  /// mass scaling and the stable step [N/m].
+  /// mass scaling and the stable step [N/m]. On one rank.
   std::vector<double> absolute_row_sums(const discrete::Grains &grains,
                                         const discrete::Joints &joints,
                                         std::size_t n_dofs) const;
 
 private:
   std::vector<GrainTie> ties_;
+  MPI_Comm communicator_ = MPI_COMM_SELF;
 };
 
 /// Hands the forces of tied grains to the mesh. Stage damp, before the constrained forces

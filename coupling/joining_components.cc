@@ -94,8 +94,9 @@ void LocalDamping::damp_mesh(const double dt)
 
 void LocalDamping::add_energies(Energies &energies) const
 {
-  for (const double e : grain_damping_.energy)
-    energies.damping += e;
+  if (grains_ == nullptr || grains_->tells_energies)
+    for (const double e : grain_damping_.energy)
+      energies.damping += e;
   energies.damping += mesh_energy_;
 }
 
@@ -229,11 +230,11 @@ double Walls::way() const
 void Walls::add_energies(Energies &energies) const
 {
   for (const Wall &wall : walls_)
-  {
-    energies.boundary_work += wall.work;
-    if (grains_ != nullptr)
+    if (grains_ != nullptr && grains_->tells_energies)
+    {
+      energies.boundary_work += wall.work;
       energies.strain_grains += wall_energy(grains_->grains, wall);
-  }
+    }
   energies.boundary_work += support_work_;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "continuum/elastic_solid.h"
-#include "coupling/overlap_weight.h"
+#include "coupling/grain_places.h"
 #include "discrete/grains.h"
 
 #include <array>
@@ -42,26 +42,28 @@ enum class MultiplierSpace
 };
 
 /// The constraint g = C_D d + C_C U of a bridging domain. Rows of the x components; those
-/// of y have the same values. Every row's values over grains and nodes sum to zero.
+/// of y have the same values. Every row's values over grains and nodes sum to zero. Every
+/// rank has all rows, with all grains, but only the nodes that it owns.
 struct ConstraintRows
 {
   std::vector<std::int32_t> overlap_grains; ///< ascending; the columns of `grains`
   SparseRows grains;                        ///< C_D [kg]
   SparseRows nodes; ///< C_C [kg]; node k has the dofs node_dofs[k]
-  std::vector<std::array<std::uint32_t, 2>> node_dofs; ///< x, y
+  std::vector<std::array<std::uint32_t, 2>> node_dofs; ///< x, y; local indices
   std::vector<std::string> names;                      ///< of the rows, for messages
+  std::vector<bool> is_own; ///< whether the row's vertex, so its multiplier, is of here
 };
 
+/// \param places        of the grains that take part in the constraint, ascending
 /// \param smallest_mass a vertex of the mesh is a multiplier when the grains give it more
 ///                      than this [kg]; on a coarser mesh in proportion to its cells
-/// \param is_left_out   grains of the overlap without part in the constraint; empty: none
 /// Throws std::invalid_argument for `coarsened` on a mesh that has no rows and columns.
+/// Collective.
 ConstraintRows constraint_rows(const discrete::Grains &grains,
                                const continuum::ElasticSolid &solid,
-                               const OverlapWeight &weight,
+                               const std::vector<GrainPlace> &places,
                                double smallest_mass,
-                               MultiplierSpace space,
-                               const std::vector<bool> &is_left_out = {});
+                               MultiplierSpace space);
 
 /// The coarser mesh as interpolation: vertex functions N'_c = sum_v P_cv N_v, which add
 /// up to one like the N_v.
@@ -76,7 +78,9 @@ struct CoarseVertices
   std::size_t size = 0;                   ///< coarse vertices
   double cells = 1.; ///< cells of the mesh in one of the coarser, mean [-]
 };
-/// \param vertices x dofs of vertices; @p spacing least distance of lines kept [m]
+/// Collective.
+/// \param vertices x dofs of vertices, the same on all ranks
+/// \param spacing  least distance of lines kept [m]
 CoarseVertices coarsened_vertices(const continuum::ElasticSolid &solid,
                                   const std::vector<std::uint32_t> &vertices,
                                   double spacing);

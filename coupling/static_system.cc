@@ -2,18 +2,15 @@
 
 #include "continuum/errors.h"
 
-#include <Amesos.h>
-#include <Amesos_BaseSolver.h>
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_LinearProblem.h>
-#include <Epetra_Map.h>
-#include <Epetra_MpiComm.h>
-#include <Epetra_Vector.h>
-#include <Teuchos_ParameterList.hpp>
+#include "coupling/distributed_system.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/map.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <stdexcept>
 
 namespace antiform::coupling
 {
@@ -61,46 +58,46 @@ double inverse_norm(const Eigen::Index n, const Solve &solve)
   return norm;
 }
 
-std::vector<double> solve_direct(const Matrix &matrix, const Eigen::VectorXd &right)
+Eigen::VectorXd sum_over_ranks(Eigen::VectorXd share,
+                               const MPI_Comm communicator)
 {
-  const int n = static_cast<int>(matrix.rows());
-  const Epetra_MpiComm comm(MPI_COMM_SELF);
-  const Epetra_Map map(n, 0, comm);
-  Epetra_CrsMatrix system(Copy, map, 0);
-  for (int row = 0; row < n; ++row)
-  {
-    const int begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
-    system.InsertGlobalValues(row, end - begin, matrix.valuePtr() + begin,
-                              matrix.innerIndexPtr() + begin);
-  }
-  system.FillComplete();
-  Epetra_Vector b(map), x(map);
-  const Epetra_LinearProblem problem(&system, &x, &b);
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+    MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE,
+                  MPI_SUM, communicator);
+  return share;
+}
+
+/// \param matrix,right shares of this rank, which has @p own_rows
+/// \return the whole solution
+Eigen::VectorXd solve_direct(const Matrix &matrix,
+                             const Eigen::VectorXd &right,
+                             const std::vector<int> &own_rows,
+                             const MPI_Comm communicator)
+{
   // MUMPS: KLU prefers diagonal pivots, which the multipliers do not have; on random
   // packings its factors are useless (residuals up to 0.5), and fill twenty times slower.
-  const std::unique_ptr<Amesos_BaseSolver> solver(
-      Amesos().Create("Amesos_Mumps", problem));
-  Teuchos::ParameterList parameters;
-  parameters.sublist("mumps").set("ICNTL(14)", 100); // [%] space for delayed pivots
-  solver->SetParameters(parameters);
-  const auto solve = [&](const Eigen::VectorXd &rhs) -> Eigen::VectorXd
+  DistributedSystem system(matrix, own_rows, communicator);
+  const Eigen::Index n = matrix.rows();
+  const auto solve = [&](Eigen::VectorXd share) -> Eigen::VectorXd
   {
-    std::copy(rhs.data(), rhs.data() + n, &b[0]);
-    if (solver->Solve() != 0)
-      refuse(n, 0.);
-    return Eigen::Map<const Eigen::VectorXd>(&x[0], n);
+    if (!system.solve(share.data()))
+      refuse(static_cast<double>(n), 0.);
+    return share;
   };
-  if (solver->SymbolicFactorization() != 0 || solver->NumericFactorization() != 0)
-    refuse(n, 0.);
+  if (!system.factorise())
+    refuse(static_cast<double>(n), 0.);
   // Pivots of round-off pass for numbers: a floating part shows in the condition only.
-  const double condition = inverse_norm(n, solve) * system.NormOne();
+  const bool first = dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+  const auto solve_whole = [&](const Eigen::VectorXd &rhs)
+  { return solve(first ? rhs : Eigen::VectorXd(Eigen::VectorXd::Zero(n))); };
+  const double condition = inverse_norm(n, solve_whole) * system.norm_one();
   if (!(condition < 1e15)) // no digit of the solution would be right
     refuse(condition, 1e15);
   // Refinement: a stiffness contrast of 1e4 costs the first solution some of its digits.
   Eigen::VectorXd solution = solve(right);
   for (int pass = 0; pass < 3; ++pass)
     solution += solve(right - matrix * solution);
-  return {solution.data(), solution.data() + n};
+  return solution;
 }
 } // namespace
 
@@ -133,6 +130,9 @@ StaticSystem::StaticSystem(const discrete::Grains &grains,
     , joints_(joints)
     , solid_(solid)
     , bridging_(bridging)
+    , communicator_(solid != nullptr ? solid->dof_handler().get_communicator()
+                                     : MPI_COMM_SELF)
+    , tells_grains_(dealii::Utilities::MPI::this_mpi_process(communicator_) == 0)
 {
   const std::size_t n =
       mesh_begin() + (solid != nullptr ? solid->dof_handler().n_dofs() : 0);
@@ -172,12 +172,19 @@ StaticSystem::Terms StaticSystem::terms(const LinearForm &form) const
     all.emplace_back(mesh_begin() + term.dof, term.value);
   return all;
 }
+void StaticSystem::demand_one_rank() const
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator_) > 1)
+    throw std::invalid_argument("static system: linear forms are for one rank");
+}
 void StaticSystem::add_spring(const LinearForm &elongation, const double stiffness)
 {
+  demand_one_rank();
   form_springs_.emplace_back(terms(elongation), stiffness);
 }
 void StaticSystem::add_constraint(const LinearForm &form)
 {
+  demand_one_rank();
   constraints_.push_back(terms(form));
 }
 void StaticSystem::add_grain_force(const std::size_t grain,
@@ -194,26 +201,61 @@ void StaticSystem::add_mesh_force(const std::size_t dof, const double force)
 std::vector<std::pair<std::size_t, double>>
 StaticSystem::tie_row(const GrainTie &tie, const unsigned int component) const
 {
-  std::vector<std::pair<std::size_t, double>> row{{index(tie.grain, component), 1.}};
+  std::vector<std::pair<std::size_t, double>> row;
+  if (tells_grains_)
+    row.emplace_back(index(tie.grain, component), 1.);
+  const auto at = [this](const std::uint32_t local)
+  { return mesh_begin() + solid_->partitioner().local_to_global(local); };
   for (const GrainTie::Node &node : tie.nodes)
     if (component < 2)
-      row.emplace_back(mesh_begin() + (component == 0 ? node.dof_x : node.dof_y),
-                       -node.value);
+      row.emplace_back(at(component == 0 ? node.dof_x : node.dof_y), -node.value);
     else
     {
-      row.emplace_back(mesh_begin() + node.dof_x, 0.5 * node.by_y);
-      row.emplace_back(mesh_begin() + node.dof_y, -0.5 * node.by_x);
+      row.emplace_back(at(node.dof_x), 0.5 * node.by_y);
+      row.emplace_back(at(node.dof_y), -0.5 * node.by_x);
     }
   return row;
 }
 
+std::size_t StaticSystem::ties_begin() const
+{
+  return bridging_ != nullptr ? bridging_->n_multipliers() : 0;
+}
+std::size_t StaticSystem::forms_begin() const
+{
+  return ties_begin() +
+         (bridging_ != nullptr ? 3 * bridging_->ties().ties().size() : 0);
+}
+
 SaddlePoint StaticSystem::saddle_point() const
 {
-  const std::size_t n_primal = n_unknowns();
-  const std::size_t n_rows = bridging_ != nullptr ? bridging_->grain_rows().n_rows() : 0;
-  const std::size_t n_ties = bridging_ != nullptr ? bridging_->ties().ties().size() : 0;
-  const std::size_t forms_begin = 2 * n_rows + 3 * n_ties;
+  Triplets all;
+  if (tells_grains_)
+    all.entries = grain_stiffness();
+  if (solid_ != nullptr)
+    for (const auto row : solid_->locally_owned())
+      for (auto it = solid_->stiffness().begin(row); it != solid_->stiffness().end(row);
+           ++it)
+        all.add(mesh_begin() + row, mesh_begin() + it->column(), it->value());
 
+  double diagonal = 0.;
+  for (const auto &entry : all.entries)
+    if (entry.row() == entry.col())
+      diagonal += entry.value();
+  diagonal = dealii::Utilities::MPI::sum(diagonal, communicator_) /
+             static_cast<double>(n_unknowns());
+
+  SaddlePoint result;
+  result.diagonal = diagonal;
+  const auto n = static_cast<Eigen::Index>(n_unknowns());
+  result.stiffness.resize(n, n);
+  result.stiffness.setFromTriplets(all.entries.begin(), all.entries.end());
+  result.constraint = constraint_share(diagonal);
+  return result;
+}
+
+std::vector<Eigen::Triplet<double>> StaticSystem::grain_stiffness() const
+{
   Triplets all;
   for (std::size_t j = 0; j < joints_.size(); ++j)
   {
@@ -229,7 +271,7 @@ SaddlePoint StaticSystem::saddle_point() const
                 index(b < 3 ? joints_.first[j] : joints_.second[j], b % 3), value);
       }
   }
-  for (std::size_t i = 0; i < n_primal; ++i)
+  for (std::size_t i = 0; i < n_unknowns(); ++i)
     all.add(i, i, spring_[i]);
   for (const PairSpring &pair : pair_springs_)
   {
@@ -245,59 +287,78 @@ SaddlePoint StaticSystem::saddle_point() const
     for (const auto &[a, value_a] : row)
       for (const auto &[b, value_b] : row)
         all.add(a, b, stiffness * value_a * value_b);
-  if (solid_ != nullptr)
-    for (auto row = 0u; row < solid_->dof_handler().n_dofs(); ++row)
-      for (auto it = solid_->stiffness().begin(row); it != solid_->stiffness().end(row);
-           ++it)
-        all.add(mesh_begin() + row, mesh_begin() + it->column(), it->value());
+  return all.entries;
+}
 
-  // Each constraint row is scaled to the mean diagonal of the stiffness.
-  double diagonal = 0.;
-  for (const auto &entry : all.entries)
-    if (entry.row() == entry.col())
-      diagonal += entry.value();
-  diagonal /= static_cast<double>(n_primal);
+SaddlePoint::Matrix StaticSystem::constraint_share(const double diagonal) const
+{
   Triplets constraint;
   if (bridging_ != nullptr)
   {
     const std::vector<std::int32_t> &overlap = bridging_->overlap_grains();
     const SparseRows &of_grains = bridging_->grain_rows(),
                      &of_mesh = bridging_->mesh_rows();
+    const std::size_t n_rows = of_grains.n_rows();
     for (std::size_t r = 0; r < n_rows; ++r)
     {
       double mass = 0.;
       for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
         mass += of_grains.value[k];
-      const double scale = diagonal / mass;
+      const double scale = diagonal / mass; // to the mean diagonal of the stiffness
       for (const unsigned int c : {0u, 1u})
       {
         const std::size_t row = c * n_rows + r;
-        for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
-          constraint.add(row, index(overlap[of_grains.column[k]], c),
-                   scale * of_grains.value[k]);
+        if (bridging_->owns_row(r))
+          for (std::int32_t k = of_grains.begin[r]; k < of_grains.begin[r + 1]; ++k)
+            constraint.add(row, index(overlap[of_grains.column[k]], c),
+                           scale * of_grains.value[k]);
         for (std::int32_t k = of_mesh.begin[r]; k < of_mesh.begin[r + 1]; ++k)
-          constraint.add(row, mesh_begin() + bridging_->node_dofs()[of_mesh.column[k]][c],
-                   scale * of_mesh.value[k]);
+          constraint.add(row,
+                         mesh_begin() + solid_->partitioner().local_to_global(
+                                            bridging_->node_dofs()[of_mesh.column[k]][c]),
+                         scale * of_mesh.value[k]);
       }
     }
+    const std::vector<GrainTie> &ties = bridging_->ties().ties();
+    for (std::size_t t = 0; t < ties.size(); ++t)
+      for (const unsigned int c : {0u, 1u, 2u})
+        for (const auto &[column, value] : tie_row(ties[t], c))
+          constraint.add(ties_begin() + 3 * t + c, column, diagonal * value);
   }
   for (std::size_t r = 0; r < constraints_.size(); ++r)
     for (const auto &[column, value] : constraints_[r])
-      constraint.add(forms_begin + r, column, diagonal * value);
-  for (std::size_t t = 0; t < n_ties; ++t)
-    for (const unsigned int c : {0u, 1u, 2u})
-      for (const auto &[column, value] : tie_row(bridging_->ties().ties()[t], c))
-        constraint.add(2 * n_rows + 3 * t + c, column, diagonal * value);
+      constraint.add(forms_begin() + r, column, diagonal * value);
+  const std::size_t n_constraints = forms_begin() + constraints_.size();
+  SaddlePoint::Matrix share(static_cast<Eigen::Index>(n_constraints),
+                            static_cast<Eigen::Index>(n_unknowns()));
+  share.setFromTriplets(constraint.entries.begin(), constraint.entries.end());
+  return share;
+}
 
-  SaddlePoint result;
-  result.diagonal = diagonal;
-  const auto n = static_cast<Eigen::Index>(n_primal),
-             m = static_cast<Eigen::Index>(forms_begin + constraints_.size());
-  result.stiffness.resize(n, n);
-  result.stiffness.setFromTriplets(all.entries.begin(), all.entries.end());
-  result.constraint.resize(m, n);
-  result.constraint.setFromTriplets(constraint.entries.begin(), constraint.entries.end());
-  return result;
+std::map<std::size_t, double> StaticSystem::all_fixed() const
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator_) == 1)
+    return fixed_;
+  std::map<std::size_t, double> all;
+  for (const auto &of_rank : dealii::Utilities::MPI::all_gather(communicator_, fixed_))
+    all.insert(of_rank.begin(), of_rank.end());
+  return all;
+}
+
+std::vector<int> StaticSystem::own_unknowns(const std::size_t n_constraints) const
+{
+  std::vector<int> own;
+  if (tells_grains_)
+    for (std::size_t i = 0; i < mesh_begin(); ++i)
+      own.push_back(static_cast<int>(i));
+  if (solid_ != nullptr)
+    for (const auto dof : solid_->locally_owned())
+      own.push_back(static_cast<int>(mesh_begin() + dof));
+  const std::size_t n_rows = ties_begin() / 2;
+  for (std::size_t r = 0; r < n_constraints; ++r)
+    if (r < ties_begin() ? bridging_->owns_row(r % n_rows) : tells_grains_)
+      own.push_back(static_cast<int>(n_unknowns() + r));
+  return own;
 }
 
 StaticSolution StaticSystem::solve() const
@@ -317,37 +378,44 @@ StaticSolution StaticSystem::solve() const
     }
 
   // Fixed unknowns: identity rows, their columns to the right-hand side.
+  const std::map<std::size_t, double> all_fixed = this->all_fixed();
   Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-  for (std::size_t i = 0; i < n_primal; ++i)
+  for (std::size_t i = tells_grains_ ? 0 : mesh_begin(); i < n_primal; ++i)
     right[static_cast<Eigen::Index>(i)] = force_[i];
+  for (const auto &fixed : all_fixed)
+    right[static_cast<Eigen::Index>(fixed.first)] = 0.;
   std::vector<Eigen::Triplet<double>> free;
   free.reserve(all.entries.size());
   for (const auto &entry : all.entries)
   {
-    const auto row = fixed_.find(entry.row()), column = fixed_.find(entry.col());
-    if (row != fixed_.end())
+    const auto row = all_fixed.find(entry.row()), column = all_fixed.find(entry.col());
+    if (row != all_fixed.end())
       continue;
-    if (column != fixed_.end())
+    if (column != all_fixed.end())
       right[entry.row()] -= entry.value() * column->second;
     else
       free.push_back(entry);
   }
-  for (const auto &[i, value] : fixed_)
-  {
-    free.emplace_back(static_cast<int>(i), static_cast<int>(i), parts.diagonal);
-    right[static_cast<Eigen::Index>(i)] = parts.diagonal * value;
-  }
+  if (tells_grains_)
+    for (const auto &[i, value] : all_fixed)
+    {
+      free.emplace_back(static_cast<int>(i), static_cast<int>(i), parts.diagonal);
+      right[static_cast<Eigen::Index>(i)] = parts.diagonal * value;
+    }
   Matrix matrix(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   matrix.setFromTriplets(free.begin(), free.end());
-  const std::vector<double> x = solve_direct(matrix, right);
+  const Eigen::VectorXd solution =
+      solve_direct(matrix, right, own_unknowns(n - n_primal), communicator_);
 
-  const Eigen::Map<const Eigen::VectorXd> solution(x.data(),
-                                                   static_cast<Eigen::Index>(n));
-  const double scale = std::max(right.cwiseAbs().maxCoeff(),
-                                (matrix.cwiseAbs() * solution.cwiseAbs()).maxCoeff());
+  const Eigen::VectorXd load = sum_over_ranks(right, communicator_),
+                        sizes =
+                            sum_over_ranks(matrix.cwiseAbs() * solution.cwiseAbs(),
+                                           communicator_),
+                        rest =
+                            sum_over_ranks(matrix * solution - right, communicator_);
+  const double scale = std::max(load.cwiseAbs().maxCoeff(), sizes.maxCoeff());
   StaticSolution result = solution_of(solution.head(parts.stiffness.rows()));
-  result.residual =
-      scale > 0. ? (matrix * solution - right).cwiseAbs().maxCoeff() / scale : 0.;
+  result.residual = scale > 0. ? rest.cwiseAbs().maxCoeff() / scale : 0.;
   if (!(result.residual < 1e-8))
     throw NumericalError(
         "static solve",
@@ -370,8 +438,8 @@ StaticSolution StaticSystem::solution_of(const Eigen::VectorXd &x) const
   if (solid_ != nullptr)
   {
     result.mesh = solid_->make_vector();
-    for (std::size_t d = 0; d < solid_->dof_handler().n_dofs(); ++d)
-      result.mesh(d) = at(mesh_begin() + d);
+    for (const auto dof : solid_->locally_owned())
+      result.mesh(dof) = at(mesh_begin() + dof);
     result.mesh.update_ghost_values();
   }
   return result;

@@ -34,7 +34,11 @@ struct SaddlePoint
 /// Linear static equilibrium of intact bonded grains, mesh and bridging domain: the
 /// saddle-point system of the energies and the constraint, solved directly by Trilinos
 /// (Amesos, MUMPS). Each constraint row is scaled to the mean diagonal of the grains.
-/// Every part is optional; joint and mesh weights are those of the objects. One rank.
+/// Every part is optional; joint and mesh weights are those of the objects.
+///
+/// On several ranks the mesh is distributed and the grains are the same on all: what
+/// concerns grains is said on every rank, a dof of the mesh is fixed by any rank, a force
+/// on it is added by one. Springs and constraints by linear forms are for one rank.
 class StaticSystem
 {
 public:
@@ -52,7 +56,8 @@ public:
   /// [N/m].
   void
   add_pair_spring(std::size_t one, std::size_t two, const Vec2 &normal, double stiffness);
-  /// Spring whose elongation is a linear form of grains and mesh [N/m].
+  /// Spring whose elongation is a linear form of grains and mesh [N/m]. Throws
+  /// std::invalid_argument on several ranks, as add_constraint() does.
   void add_spring(const LinearForm &elongation, double stiffness);
   /// A linear form of grains and mesh that stays 0: a multiplier more.
   void add_constraint(const LinearForm &form);
@@ -61,8 +66,10 @@ public:
   void add_mesh_force(std::size_t dof, double force);
 
   /// Throws NumericalError when the factorisation fails or the residual exceeds 1e-8.
+  /// Collective.
   StaticSolution solve() const;
 
+  /// This rank's share of the matrices. Collective.
   SaddlePoint saddle_point() const;
   /// Prescribed unknowns and their values, by the unknowns' numbers.
   const std::map<std::size_t, double> &fixed() const { return fixed_; }
@@ -70,7 +77,8 @@ public:
   {
     return 3 * grain + component;
   }
-  /// Entries of what ties a displacement (0, 1) or the rotation (2) of a grain.
+  /// This rank's entries of what ties a displacement (0, 1) or the rotation (2) of a
+  /// grain.
   std::vector<std::pair<std::size_t, double>> tie_row(const GrainTie &tie,
                                                       unsigned int component) const;
   std::size_t mesh_begin() const { return 3 * grains_.size(); }
@@ -79,7 +87,7 @@ public:
   const discrete::Joints &joints() const { return joints_; }
   /// Null without a mesh.
   const continuum::ElasticSolid *solid() const { return solid_; }
-  /// Displacements in the unknowns @p x.
+  /// Displacements in the unknowns @p x, all of them on every rank.
   StaticSolution solution_of(const Eigen::VectorXd &x) const;
 
 private:
@@ -87,6 +95,8 @@ private:
   const discrete::Joints &joints_;
   const continuum::ElasticSolid *solid_;
   const BridgingDomain *bridging_;
+  MPI_Comm communicator_;
+  bool tells_grains_; ///< this rank has the rows of the grains
   std::map<std::size_t, double> fixed_;
   std::vector<double> spring_, force_;
   struct PairSpring
@@ -99,6 +109,17 @@ private:
   /// Linear forms by unknown; a spring's stiffness.
   using Terms = std::vector<std::pair<std::size_t, double>>;
   Terms terms(const LinearForm &form) const;
+  void demand_one_rank() const;
+  /// Constraint rows of the bridging domain, then of tied grains, then linear forms.
+  std::size_t ties_begin() const;
+  std::size_t forms_begin() const;
+  /// Of joints and springs.
+  std::vector<Eigen::Triplet<double>> grain_stiffness() const;
+  /// This rank's part of C; @p diagonal mean of the stiffness'.
+  SaddlePoint::Matrix constraint_share(double diagonal) const;
+  /// Fixed unknowns of all ranks.
+  std::map<std::size_t, double> all_fixed() const;
+  std::vector<int> own_unknowns(std::size_t n_constraints) const;
   std::vector<std::pair<Terms, double>> form_springs_;
   std::vector<Terms> constraints_;
 };

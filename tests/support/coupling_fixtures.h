@@ -147,7 +147,7 @@ struct Bridged
 {
   GrainState state;
   OverlapWeight weight;
-  dealii::parallel::distributed::Triangulation<2> triangulation{MPI_COMM_SELF};
+  dealii::parallel::distributed::Triangulation<2> triangulation;
   std::unique_ptr<continuum::ElasticSolid> solid;
   std::optional<MeshState> mesh;
   std::unique_ptr<BridgingDomain> domain;
@@ -159,7 +159,11 @@ struct Bridged
   continuum::FiniteElasticity form = continuum::FiniteElasticity::semi_linear;
 
   /// One thread: these models are too small to share out.
-  Bridged() { omp_set_num_threads(1); }
+  explicit Bridged(const MPI_Comm communicator = MPI_COMM_SELF)
+      : triangulation(communicator)
+  {
+    omp_set_num_threads(1);
+  }
   Bridged(const Bridged &) = delete;
 
   /// Bond the grains, weigh both sides and join them; triangulation and weight are there.
