@@ -185,6 +185,8 @@ void Walls::react(const Clock &clock)
         mesh_->force.begin()[entry.dof] +
         (domain_ != nullptr ? domain_->mesh_impulse(entry.dof) / clock.dt : 0.);
     support_work_ += 0.5 * clock.dt * entry.reaction * entry.before;
+    if (averaged_ == 1)
+      continue;
     entry.sum += entry.reaction;
     if ((clock.step + 1) % averaged_ != 0)
       continue;
@@ -208,7 +210,8 @@ double Walls::mesh_reaction(const bool of_layer) const
   double sum = 0.;
   for (const PrescribedDof &entry : mesh_->prescribed)
     if (entry.wall >= 0)
-      sum += (of_layer ? entry.layer_share : 1.) * entry.mean *
+      sum += (of_layer ? entry.layer_share : 1.) *
+             (averaged_ == 1 ? entry.reaction : entry.mean) *
              walls_[entry.wall].normal.x;
   return dealii::Utilities::MPI::sum(sum, mesh_->communicator()) /
          static_cast<double>(walls_.size());
