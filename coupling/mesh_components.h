@@ -16,7 +16,7 @@ struct PrescribedDof
   double layer_share = 0.; ///< of the reaction, that the competent layer takes
   double before = 0.;      ///< velocity before the kick [m/s]
   double reaction = 0.;    ///< force of the support on the mesh, of the last step [N]
-  double mean = 0.;        ///< of the reactions of Walls::average_over() steps, if more than 1 [N]
+  double mean = 0.;        ///< reaction where Walls averages over steps [N]
   double sum = 0.;         ///< of those since then [N]
 };
 
