@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <ctime>
+#include <functional>
 #include <vector>
 
 namespace antiform::coupling::test
@@ -33,12 +34,13 @@ struct SlowLoading
 /// along its height for a shortening of @p strain. It ends when bonds have broken and the
 /// stress is @p stop_drop below the largest so far, 0: at @p strain. Densities are
 /// scaled; damping is combined, 0.7, so that the drift does not rub. Constant loads are
-/// in balance before.
+/// in balance before. @p watch gets the stress [Pa] at every step.
 inline SlowLoading slow_loading(Specimen &specimen,
                                 const double transits,
                                 const double strain,
                                 const double stop_drop = 0.,
-                                const std::vector<GrainLoad> &loads = {})
+                                const std::vector<GrainLoad> &loads = {},
+                                const std::function<void(double)> &watch = {})
 {
   GrainBalance body(specimen.state, specimen.platens, loads);
   discrete::Grains &grains = specimen.state.grains;
@@ -75,6 +77,8 @@ inline SlowLoading slow_loading(Specimen &specimen,
     const double time = static_cast<double>(result.steps) * dt;
     body.add_forces({result.steps, time, dt}, &specimen.state.cracks, false);
     result.stress = specimen.stress(body.conjugate_force());
+    if (watch)
+      watch(result.stress);
     if (result.stress > result.peak)
     {
       result.peak = result.stress;

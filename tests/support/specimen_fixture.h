@@ -34,16 +34,7 @@ struct Specimen
     discrete::PackingParameters packing;
     packing.seed = seed;
     const double top = 2. * size;
-    for (const discrete::Disk &disk :
-         discrete::pack_polygon({{0., 0.}, {size, 0.}, {size, top}, {0., top}}, packing)
-             .disks)
-      state.grains.add(disk.centre, disk.radius, 2600., 0);
-    state.joints.begin_group(law, 0, "rock");
-    for (const auto &[i, j] : discrete::pairs_within(
-             state.grains, 0.5 * packing.installation_gap_ratio, 0, 0))
-      state.joints.add(state.grains, i, j, law.effective_modulus,
-                       law.effective_modulus);
-    state.joints.finish(state.grains.size());
+    fill({{0., 0.}, {size, 0.}, {size, top}, {0., top}}, packing, law);
     add_platens(top);
   }
   Specimen(const Specimen &) = delete;
@@ -51,6 +42,22 @@ struct Specimen
   /// Stress for the force conjugate to the shortening, compression positive [Pa].
   double stress(const double force) const { return force / (width * height); }
   std::size_t n_grains() const { return state.grains.size(); }
+
+protected:
+  Specimen() { omp_set_num_threads(1); }
+
+  void fill(const std::vector<Vec2> &outline,
+            const discrete::PackingParameters &packing,
+            const discrete::FlatJoint &law)
+  {
+    for (const discrete::Disk &disk : discrete::pack_polygon(outline, packing).disks)
+      state.grains.add(disk.centre, disk.radius, 2600., 0);
+    state.joints.begin_group(law, 0, "rock");
+    for (const auto &[i, j] :
+         discrete::pairs_within(state.grains, 0.5 * packing.installation_gap_ratio, 0, 0))
+      state.joints.add(state.grains, i, j, law.effective_modulus, law.effective_modulus);
+    state.joints.finish(state.grains.size());
+  }
 
 private:
   /// Frictionless: grains that touch an end keep to it; one of them is held sideways.
