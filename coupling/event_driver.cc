@@ -225,9 +225,19 @@ double EventDriver::step_size(const double sign)
   return size;
 }
 
+/// Displace the body. A long way is taken in parts, since the trapezoidal rule, by which
+/// work is booked, sees no kink of the law within a part.
+void EventDriver::move(const Eigen::VectorXd &increment, const double load_step)
+{
+  const double share = body_.allowed_share(increment, settings_.part_length);
+  const int n = static_cast<int>(std::ceil(std::min(1. / share, settings_.most_parts)));
+  for (int part = 0; part < n; ++part)
+    move_a_part(increment / n, load_step / n);
+}
+
 /// Displace the body and book the work of its supports, of its loads, and of what holds
 /// it back from moving by itself, each by the trapezoidal rule.
-void EventDriver::move(const Eigen::VectorXd &increment, const double load_step)
+void EventDriver::move_a_part(const Eigen::VectorXd &increment, const double load_step)
 {
   const Eigen::VectorXd before = unbalanced_;
   const double force = body_.conjugate_force();

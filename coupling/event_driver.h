@@ -27,6 +27,9 @@ struct DriverSettings
   int events_per_step = 0;     ///< k: a load step reaches that many; 0: N / 200
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
+  /// Likewise of a part of a move: longer ones are made and booked in parts.
+  double part_length = 2.;
+  double most_parts = 20.; ///< [-]
 
   LocalSettings local; ///< of bodies that are grains alone
   /// While bonds of parts that were balanced apart still break, the whole may be that
@@ -123,6 +126,7 @@ private:
   void come_to_rest(double mean);
   double step_size(double sign);
   void move(const Eigen::VectorXd &increment, double load_step);
+  void move_a_part(const Eigen::VectorXd &increment, double load_step);
   void evaluate();
   bool is_balanced() const;
   void add_record();
