@@ -107,7 +107,7 @@ TEST(EventRun, GoesThroughThePeakInBalance)
   EXPECT_EQ(energy.at("kinetic"), 0.);
   for (const char *term : {"strain_grains", "slip", "fracture", "damping"})
     EXPECT_GT(energy.at(term).get<double>(),
-              5e-3 * energy.at("boundary_work").get<double>())
+              1e-3 * energy.at("boundary_work").get<double>()) // of rubble little is left
         << term;
 }
 
