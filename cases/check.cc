@@ -1,5 +1,6 @@
 #include "cases/effects.h"
 #include "cases/geometry.h"
+#include "cases/join_choice.h"
 #include "cases/mechanism.h"
 #include "cases/program.h"
 #include "cases/sizes.h"
@@ -54,6 +55,8 @@ Json to_json(const Parameters &p)
                                  {"guided_without_matrix", e.bare_guided}};
     json["crushes_before_folding"] = e.crushes_first;
   }
+  if (p.joins_grains_and_mesh())
+    json["join"] = {{"how", p.matrix.join}, {"why_chosen", p.matrix.why_join}};
   json["sizes"] = {{"grains", std::llround(sizes.grains)},
                    {"layer_grains", std::llround(sizes.layer_grains)},
                    {"joints", std::llround(sizes.joints)},
@@ -136,9 +139,13 @@ int check(const Parameters &p, const bool json, std::ostream &out)
     if (p.is_bridged())
       line(out, "  overlap   %.3g d wide (%.3g m), %.3g d of matrix grains before it",
            p.bridging.overlap, p.bridging.overlap * g.diameter(), p.bridging.buffer);
+    if (p.has_grain_cover())
+      out << "  cover     matrix grains up to its surface, mesh below the layer only\n";
     if (p.has_surface_interface())
       line(out, "  join      the mesh ends at the layer's outer grains, cells of %.3g m",
            p.matrix.cell_size * g.diameter());
+    if (!p.matrix.why_join.empty())
+      out << "  chosen    " << join_in_words(p) << '\n';
   }
   if (p.has("beds"))
     out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";

@@ -157,7 +157,12 @@ bool Parameters::joins_grains_and_mesh() const
 
 bool Parameters::is_bridged() const
 {
-  return joins_grains_and_mesh() && matrix.join == "bridging domain";
+  return joins_grains_and_mesh() && matrix.join != "surface interface";
+}
+
+bool Parameters::has_grain_cover() const
+{
+  return joins_grains_and_mesh() && matrix.join == "grain cover";
 }
 
 bool Parameters::has_surface_interface() const

@@ -7,6 +7,7 @@ namespace antiform::cases
 {
 FoldGauge::FoldGauge(const Scene &scene)
     : scene_(scene)
+    , surface_is_mesh_(scene.mesh && !scene.geometry.has_grain_cover())
 {
   find_surface();
 }
@@ -25,7 +26,7 @@ double FoldGauge::half_width() const
 void FoldGauge::find_surface()
 {
   const SectionGeometry &g = scene_.geometry;
-  if (scene_.mesh)
+  if (surface_is_mesh_)
   {
     const auto partitioner = scene_.mesh->displacement.get_partitioner();
     for (const auto dof : scene_.solid->locally_owned())
@@ -46,8 +47,8 @@ double FoldGauge::surface_uplift() const
 {
   double sum = 0., n = static_cast<double>(surface_.size());
   for (const std::uint32_t i : surface_)
-    sum += scene_.mesh ? scene_.mesh->displacement.begin()[i]
-                       : scene_.grains->state.grains.displacement_y[i];
+    sum += surface_is_mesh_ ? scene_.mesh->displacement.begin()[i]
+                            : scene_.grains->state.grains.displacement_y[i];
   sum = over_ranks(sum);
   n = over_ranks(n);
   return n > 0. ? sum / n : 0.;

@@ -30,6 +30,7 @@ private:
   double over_ranks(double share) const;
 
   const Scene &scene_;
+  bool surface_is_mesh_;
   /// Top of the section above the crest: mesh dofs, or grains where there is no mesh.
   std::vector<std::uint32_t> surface_;
 };

@@ -11,6 +11,7 @@ SectionGeometry::SectionGeometry(const Parameters &p)
     , wavelength_(p.layer_length())
     , diameter_(p.grain_diameter())
     , has_matrix_(p.has("matrix"))
+    , has_grain_cover_(p.has_grain_cover())
 {
   if (p.layer.shape == "cosine")
     amplitude_ = p.layer.amplitude_ratio * thickness_;
@@ -36,6 +37,8 @@ double SectionGeometry::axis(const double x) const
 
 double SectionGeometry::rim(const double x, const bool top) const
 {
+  if (top && has_grain_cover_)
+    return surface_;
   const double width = length_ / n_columns_;
   const double column =
       std::clamp(std::floor((x - x_min()) / width), 0., n_columns_ - 1.);

@@ -25,6 +25,8 @@ public:
   double base() const { return base_; }
   double diameter() const { return diameter_; }
   bool has_matrix() const { return has_matrix_; }
+  /// Grains reach up to the surface: the core has no rim above the layer.
+  bool has_grain_cover() const { return has_grain_cover_; }
 
   /// Axis of the layer, a0/2 (1 + cos(2 pi x / L)) within half a wavelength of the crest.
   double axis(double x) const;
@@ -36,7 +38,8 @@ public:
   unsigned int n_columns() const { return n_columns_; }
   double core_top(double x) const;
   double core_bottom(double x) const;
-  /// Distance to the core: the layer and the buffer of matrix grains beside it [m].
+  /// Distance to the core: the layer and the buffer (or the cover) of matrix grains
+  /// beside it [m].
   double distance_to_core(const Vec2 &point) const;
 
   /// Outline of the layer, counter-clockwise, a vertex a grain diameter along the curves.
@@ -47,7 +50,7 @@ private:
 
   double length_, thickness_, amplitude_ = 0., wavelength_, surface_, base_, diameter_;
   double buffer_ = 0.;
-  bool has_matrix_;
+  bool has_matrix_, has_grain_cover_;
   unsigned int n_columns_;
 };
 } // namespace antiform::cases

@@ -1,5 +1,6 @@
 // How grains and mesh may be joined.
 #include "cases/declarations.h"
+#include "cases/join_choice.h"
 
 #include <cmath>
 
@@ -27,8 +28,7 @@ void check_overlap_fits(const Parameters &p,
   const double overlap = p.bridging.overlap * d;
   const double buffer = p.bridging.buffer * d;
   const double cell = p.matrix.cell_size * d;
-  // The relative slack is for ratios that fit exactly but for rounding.
-  if (ratio == 0. || overlap + buffer + cell <= room * (1. + 1e-12))
+  if (ratio == 0. || holds(room, room_of_overlap(p)))
     return;
   const double largest = std::floor((room - buffer - cell) / d * 1e3) / 1e3;
   std::string text = "the overlap is wider than the " + what + ": buffer " +
@@ -41,9 +41,12 @@ void check_overlap_fits(const Parameters &p,
             in_metres(largest * d) + "); or give";
   else
     text += "No overlap fits beside this buffer. Give";
+  const bool of_cover = what == "cover";
   text += " more grains across the layer, a smaller buffer width ratio, a larger '" +
-          entry + "', 'Matrix/Join' = 'surface interface', or 'Matrix/Representation' = "
-          "'grains'.";
+          entry + "', 'Matrix/Join' = " +
+          (of_cover && holds(room, thinnest_grain_cover * d) ? "'grain cover' or " : "") +
+          "'surface interface'" + (of_cover ? " (or 'automatic')" : "") +
+          ", or 'Matrix/Representation' = 'grains'.";
   findings.push_back(
       {{"Bridging domain/Overlap width ratio", "Bridging domain/Buffer width ratio",
         "Matrix/Cell size ratio", "Layer/Grains across", "Layer/Thickness", entry},
@@ -77,6 +80,28 @@ void check_waves_of_overlap(const Parameters &p, Findings &findings)
                         "'Bridging domain/Sub-cycles' = 1."});
 }
 
+/// A cover of grains has enough of them, and no mesh above.
+void check_grain_cover(const Parameters &p, Findings &findings)
+{
+  const double cover = p.matrix.burial_depth_ratio * p.layer.thickness,
+               least = thinnest_grain_cover * p.grain_diameter();
+  if (!holds(cover, least) && cover > 0.)
+    findings.push_back({{"Matrix/Join", "Matrix/Burial depth ratio",
+                         "Layer/Grains across"},
+                        "a cover of " + in_metres(cover) + " is thinner than " +
+                            short_text(thinnest_grain_cover) + " grains of " +
+                            in_metres(p.grain_diameter()) +
+                            ": that is no rock. Give 'surface interface' or "
+                            "'automatic', or more grains across the layer."});
+  for (const bool stands : {p.has_foundation_under("top"), p.is_absorbing("top")})
+    if (stands)
+      findings.push_back({{"Matrix/Join", "Foundation/Faces",
+                           "Absorbing boundary/Faces"},
+                          "a foundation or an absorbing boundary on the top is one of "
+                          "the mesh, and the cover is grains. Give base to its faces, or "
+                          "'bridging domain' or 'surface interface' here."});
+}
+
 void check_bridging(const Parameters &p, Findings &findings)
 {
   if (p.matrix.cell_size < 1.5 && p.bridging.multipliers == "mesh")
@@ -96,8 +121,11 @@ void check_bridging(const Parameters &p, Findings &findings)
                         "narrower than one cell ('Matrix/Cell size ratio' = " +
                             short_text(p.matrix.cell_size) +
                             "). Give at least 2 cells and 4 grain diameters."});
-  check_overlap_fits(p, "cover", "Matrix/Burial depth ratio", p.matrix.burial_depth_ratio,
-                     findings);
+  if (p.has_grain_cover())
+    check_grain_cover(p, findings);
+  else
+    check_overlap_fits(p, "cover", "Matrix/Burial depth ratio",
+                       p.matrix.burial_depth_ratio, findings);
   check_overlap_fits(p, "base", "Matrix/Base depth ratio", p.matrix.base_depth_ratio,
                      findings);
 }

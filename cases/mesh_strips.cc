@@ -46,7 +46,7 @@ std::vector<continuum::Strip> mesh_strips(const Parameters &p,
     strips.push_back({core_bottom, core_top, even_rows(rows), layer_material_id,
                       geometry.has_matrix() && joined});
   }
-  if (geometry.has_matrix())
+  if (geometry.has_matrix() && !geometry.has_grain_cover())
   {
     const double height = geometry.surface() - geometry.core_top(0.);
     strips.push_back({core_top, surface,

@@ -59,9 +59,11 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
   entries.choice(
       "Join", matrix.join,
       "How a layer of grains and the mesh of the matrix meet: in an overlap, with matrix "
-      "grains beside the layer; or the mesh ends where the layer's outer grains begin, "
-      "and 'Interface' says by which law they hold on to it, without matrix grains.",
-      "bridging domain|surface interface");
+      "grains beside the layer; the same below it, under a cover of matrix grains alone; "
+      "or the mesh ends where the layer's outer grains begin, "
+      "and 'Interface' says by which law they hold on to it, without matrix grains. "
+      "automatic takes the first that the cover is thick enough for.",
+      "bridging domain|grain cover|surface interface|automatic");
   entries.number(
       "Mesh modulus ratio", matrix.mesh_modulus_ratio,
       "Moduli of the mesh over those of the matrix grains; other than 1 only to "

@@ -2,6 +2,7 @@
 #include "cases/beds.h"
 #include "cases/deck_reader.h"
 #include "cases/declarations.h"
+#include "cases/join_choice.h"
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -88,6 +89,7 @@ public:
       read_rocks(p);
       refuse_what_rocks_say(p);
     }
+    choose_join(p);
     for (const Finding &finding : check_parameters(p))
       report(finding);
     if (!problems_.empty())

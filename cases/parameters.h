@@ -91,7 +91,9 @@ struct MatrixParameters
   std::string interface = "cemented"; ///< cemented | sliding | frictional | frictionless
   double friction = 0.6;              ///< mu of a frictional interface [-]
   double interface_cohesion = 0.;     ///< c of a frictional interface [Pa]
-  std::string join = "bridging domain"; ///< of grains and mesh, or surface interface
+  std::string join = "bridging domain"; ///< of grains and mesh, or grain cover, surface
+                                        ///< interface; automatic until it is chosen
+  std::string why_join;                 ///< it was chosen; empty: the deck says it
   double mesh_modulus_ratio = 1.; ///< mesh moduli over those of the matrix grains
   // mesh
   double cell_size = 2.;    ///< h_FE over mean grain diameter, near the overlap
@@ -356,6 +358,8 @@ struct Parameters
   bool joins_grains_and_mesh() const;
   /// The same, joined in an overlap.
   bool is_bridged() const;
+  /// The same, below the layer only: the cover is matrix grains up to its surface.
+  bool has_grain_cover() const;
   /// The same, joined where the mesh's edges and the layer's outer grains meet.
   bool has_surface_interface() const;
   /// That keeps layer and matrix together, by multipliers.

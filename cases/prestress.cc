@@ -155,7 +155,8 @@ void press_walls(Scene &scene, const Prestress &prestress)
     double top = g.surface(), bottom = g.base();
     if (scene.bridging)
     {
-      top = g.core_top(x) + scene.bridging->weight().width;
+      if (!g.has_grain_cover())
+        top = g.core_top(x) + scene.bridging->weight().width;
       bottom = g.core_bottom(x) - scene.bridging->weight().width;
     }
     double height[2] = {g.thickness(), top - bottom - g.thickness()};
@@ -188,7 +189,7 @@ std::vector<double> external_forces(const Scene &scene)
       force[i] -=
           grains.mass[i] * p.gravity.acceleration *
           (scene.bridging ? scene.bridging->weight().grains(grains.reference(i)) : 1.);
-  if (!scene.mesh && p.has("surface pressure"))
+  if ((!scene.mesh || p.has_grain_cover()) && p.has("surface pressure"))
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))
       force[i] -= p.pressure_on_top() * width;
   return force;

@@ -3,6 +3,7 @@
 
 #include "cases/deck_reader.h"
 #include "cases/event_run.h"
+#include "cases/join_choice.h"
 #include "cases/output_directory.h"
 #include "cases/run_deck.h"
 #include "cases/run_log.h"
@@ -71,6 +72,8 @@ int run(const Parameters &parameters,
   std::filesystem::create_directories(options.output + "/fields");
   RunLog log(options.output + "/log.txt", first, options.resume);
   log.line("antiform " ANTIFORM_VERSION ": " + parameters.title);
+  if (!parameters.matrix.why_join.empty())
+    log.line("join of layer and matrix: " + join_in_words(parameters));
 
   if (parameters.run.driver == "static")
     return run_static(parameters, options, log, communicator);

@@ -151,7 +151,7 @@ void add_loads(Scene &scene)
     down[1] = -p.gravity.acceleration;
     if (p.has("gravity"))
       add_to_mesh(continuum::gravity(*scene.solid, down), "gravity");
-    if (p.has("surface pressure"))
+    if (p.has("surface pressure") && !p.has_grain_cover())
       add_to_mesh(continuum::pressure(*scene.solid, {continuum::boundary::top},
                                       p.pressure_on_top()),
                   "surface pressure");
@@ -171,7 +171,7 @@ void add_loads(Scene &scene)
       weight.push_back(scene.bridging->weight().grains(state.grains.reference(i)));
   if (p.has("gravity"))
     add(std::make_unique<GrainGravity>(state, p.gravity.acceleration, weight), "gravity");
-  if (p.has("surface pressure") && !scene.mesh)
+  if (p.has("surface pressure") && (!scene.mesh || p.has_grain_cover()))
   {
     std::vector<GrainLoad> chain;
     for (const auto &[i, width] : surface_grains(*scene.grains, scene.geometry))

@@ -36,8 +36,12 @@ double height_of_grains(const Parameters &p, const SectionGeometry &g)
   if (p.has_surface_interface())
     return g.thickness();
   const double beside = (p.bridging.overlap + p.bridging.buffer) * g.diameter();
-  return g.thickness() + std::min(p.matrix.burial_depth_ratio * g.thickness(), beside) +
-         std::min(p.matrix.base_depth_ratio * g.thickness(), beside);
+  const double layer = g.thickness(), cover = p.matrix.burial_depth_ratio * layer;
+  // The bent axis takes half of its amplitude from a cover that is flat above.
+  const double mean_axis = 0.5 * g.amplitude() * g.wavelength() / g.length();
+  return layer + std::min(p.matrix.base_depth_ratio * layer, beside) +
+         (p.has_grain_cover() ? cover + g.amplitude() - mean_axis
+                              : std::min(cover, beside));
 }
 
 double rows_of_cells(const Parameters &p, const SectionGeometry &g)

@@ -24,8 +24,8 @@ void declare_mesh(MatrixParameters &matrix, const bool bare, Declarations &entri
   {
     entries.whole("Cover rows", matrix.cover_rows,
                   "Even rows of cells in the cover; 0: as many as the size of the cells "
-                  "asks for, and a cover thinner than one is refused. More than 0 only "
-                  "without matrix grains [-].",
+                  "asks for, and a cover thinner than one is refused (it gets a row where "
+                  "'Join' is automatic). More than 0 only without matrix grains [-].",
                   Number::at_least(0.));
     entries.number("Contact stiffness ratio", matrix.contact_stiffness,
                    "Static driver: stiffness of an interface of finite elements that is "
