@@ -151,6 +151,8 @@ void Recorder::run(const Stage, const Clock &clock)
     peak_stress_ = sample.stress;
     peak_strain_ = sample.strain;
     peak_share_ = sample.matrix_share;
+    at_peak_ = {sample.fold.fold_amplitude, sample.fold.limb_dip,
+                static_cast<double>(n_tensile_), static_cast<double>(n_shear_)};
   }
   if (sample.stress >= scene_.parameters.run.stress_ratio_of_peak * peak_stress_)
     last_high_strain_ = sample.strain;
@@ -352,6 +354,8 @@ void Recorder::fill(Summary &summary) const
       results["first_crack_is_tensile"] = {
           cracks.front().mode == discrete::Bond::broken_in_tension ? 1. : 0., "-"};
     }
+    if (!specimen_ && !scene_.pulls())
+      report_fold(cracks, g, at_peak_, summary);
     const auto &would = scene_.grains->state.joints.would_break;
     const auto n_would = std::count(would.begin(), would.end(), 1);
     if (scene_.events == nullptr) // which looks at joints that break only
@@ -408,6 +412,10 @@ void Recorder::visit_state(coupling::StateArchive &archive)
                                 &peak_strain_,
                                 &last_high_strain_,
                                 &peak_share_,
+                                &at_peak_.amplitude,
+                                &at_peak_.limb_dip,
+                                &at_peak_.n_tensile,
+                                &at_peak_.n_shear,
                                 &first_crack_strain_,
                                 &first_crack_stress_,
                                 &next_field_,

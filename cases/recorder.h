@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cases/fold_gauge.h"
+#include "cases/fracture_pattern.h"
 #include "cases/scene.h"
 #include "cases/small_strain.h"
 #include "cases/specimen.h"
@@ -82,6 +83,7 @@ private:
   std::vector<double> strain_, stress_, total_, cracks_;
   std::optional<SpecimenRecord> specimen_;
   double peak_stress_ = 0., peak_strain_ = 0., peak_share_ = 0.;
+  FoldAtPeak at_peak_;
   double last_high_strain_ = 0.; ///< the stress was above the share that ends the run
   double first_crack_strain_ = 0., first_crack_stress_ = 0.;
   std::int64_t n_tensile_ = 0, n_shear_ = 0;
