@@ -179,4 +179,40 @@ std::vector<Fracture> draw_fractures(const std::vector<Vec2> &polygon,
   }
   return fractures;
 }
+
+std::vector<Fracture> parallel_fractures(const std::vector<Vec2> &polygon,
+                                         const ParallelSet &set)
+{
+  const Vec2 along{std::cos(set.orientation), std::sin(set.orientation)};
+  const Vec2 across = perpendicular(along);
+  // Lines of the set are told by their distance from the origin, of which they have some
+  // whole number of spacings and the phase.
+  double nearest = 1e300, farthest = -1e300, reach = 0.;
+  for (const Vec2 &p : polygon)
+  {
+    nearest = std::min(nearest, dot(p, across));
+    farthest = std::max(farthest, dot(p, across));
+    reach = std::max(reach, norm(p));
+  }
+  std::vector<Fracture> fractures;
+  for (double k = std::ceil(nearest / set.spacing - set.phase);
+       (k + set.phase) * set.spacing <= farthest; ++k)
+  {
+    const Vec2 middle = ((k + set.phase) * set.spacing) * across;
+    const Vec2 begin = middle - 2. * reach * along, end = middle + 2. * reach * along;
+    const std::vector<double> spans = spans_inside(polygon, begin, end);
+    for (std::size_t s = 0; s + 1 < spans.size(); s += 2)
+    {
+      const Vec2 enters = begin + spans[s] * (end - begin);
+      const Vec2 leaves = begin + spans[s + 1] * (end - begin);
+      if (norm(leaves - enters) <= 1e-9 * reach)
+        continue; // touches a vertex
+      if (s > 0 && spans[s] - spans[s - 1] <= 1e-12)
+        fractures.back().end = leaves; // passes one
+      else
+        fractures.push_back({enters, leaves, set.law});
+    }
+  }
+  return fractures;
+}
 } // namespace antiform::discrete

@@ -68,6 +68,15 @@ struct FractureSet
   SmoothJoint law;
 };
 
+/// A set of parallel fractures at even distances that go all the way through.
+struct ParallelSet
+{
+  double orientation = 0.; ///< of the traces, from x [rad]
+  double spacing = 1.;     ///< between neighbours, across the traces [m]
+  double phase = 0.5;      ///< distance from the origin to a trace over the spacing [-]
+  SmoothJoint law;
+};
+
 /// Length of the segment from @p a to @p b inside a simple polygon [m].
 double
 length_inside(const std::vector<Vec2> &polygon, const Vec2 &a, const Vec2 &b);
@@ -79,4 +88,10 @@ length_inside(const std::vector<Vec2> &polygon, const Vec2 &a, const Vec2 &b);
 std::vector<Fracture> draw_fractures(const std::vector<Vec2> &polygon,
                                      const FractureSet &set,
                                      std::uint64_t seed);
+
+/// The traces of @p set inside the simple @p polygon, in the order in which they lie to
+/// the left of the first. One that leaves the polygon and returns is in pieces. In a large
+/// region P21 is 1/spacing. \pre spacing > 0
+std::vector<Fracture> parallel_fractures(const std::vector<Vec2> &polygon,
+                                         const ParallelSet &set);
 } // namespace antiform::discrete

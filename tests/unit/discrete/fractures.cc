@@ -36,6 +36,60 @@ TEST(Fractures, LengthInsideAPolygonIsThatOfItsPieces)
   EXPECT_NEAR(length_inside(bent, {12., 0.}, {0., 12.}), 10. * std::sqrt(2.), 1e-12);
 }
 
+TEST(Fractures, ParallelSetsLieAtTheirSpacingAndHaveOneOverItAsIntensity)
+{
+  for (const double angle : {0., 0.5 * M_PI})
+  {
+    const std::vector<Fracture> set =
+        parallel_fractures(square, {angle, 2., 0.5, {}});
+    ASSERT_EQ(set.size(), 10u);
+    for (const Fracture &f : set)
+      EXPECT_NEAR(f.length(), 20., 1e-12);
+  }
+  // Oblique: the traces' lengths times the spacing are the square's area by the midpoint
+  // rule, whose error for the lengths' four kinks of slope is spacing^2 / 8 of each.
+  for (const double phase : {0., 0.3, 0.5})
+  {
+    const double angle = M_PI / 6., spacing = 2.;
+    const std::vector<Fracture> set =
+        parallel_fractures(square, {angle, spacing, phase, {}});
+    const double slope = 1. / (std::sin(angle) * std::cos(angle));
+    double length = 0.;
+    for (std::size_t k = 0; k < set.size(); ++k)
+    {
+      length += set[k].length();
+      const Vec2 along = set[k].end - set[k].begin;
+      EXPECT_NEAR(std::atan2(along.y, along.x), angle, 1e-12);
+      if (k > 0)
+      {
+        EXPECT_NEAR(cross(along, set[k].begin - set[k - 1].begin) / norm(along), spacing,
+                    1e-12);
+      }
+      // Of the origin, the square's corner: a whole number of spacings and the phase.
+      const double from = cross(along, set[k].begin) / norm(along) / spacing - phase;
+      EXPECT_NEAR(from, std::round(from), 1e-12);
+    }
+    EXPECT_NEAR(spacing * length, 400., 4. * slope * spacing * spacing / 8.);
+  }
+}
+
+TEST(Fractures, ATraceThatLeavesTheRegionAndReturnsIsInPieces)
+{
+  // x + y = 12 and 24, of an L with the width 5; x + y = 0 but touches a corner.
+  const std::vector<Fracture> set =
+      parallel_fractures(bent, {0.75 * M_PI, 12. / std::sqrt(2.), 0., {}});
+  ASSERT_EQ(set.size(), 4u);
+  double sum = 0.;
+  for (const Fracture &f : set)
+    sum += f.length();
+  EXPECT_NEAR(sum, (5. + 5. + 1. + 1.) * std::sqrt(2.), 1e-12);
+  // x + y = 10 touches the inner corner and goes on.
+  const std::vector<Fracture> touching =
+      parallel_fractures(bent, {0.75 * M_PI, 10. / std::sqrt(2.), 0., {}});
+  ASSERT_GE(touching.size(), 1u);
+  EXPECT_NEAR(touching.back().length(), 10. * std::sqrt(2.), 1e-12);
+}
+
 TEST(Fractures, NetworkHasTheIntensityAskedFor)
 {
   using Form = LengthDistribution::Form;
