@@ -3,8 +3,8 @@
 #include "cases/directory_lock.h"
 #include "cases/interrupt.h"
 #include "cases/output_directory.h"
+#include "cases/predicted_cost.h"
 #include "cases/run_log.h"
-#include "cases/sizes.h"
 #include "cases/trial_pool.h"
 #include "coupling/output/whole_file.h"
 
@@ -193,11 +193,14 @@ struct Costs
 
 Costs predict_costs(const Parameters &p, const CalibrationProblem &problem)
 {
+  MachineSpeed speed; // trials have a core each
   Costs costs;
   const auto seconds_of = [&](const Test &test)
   {
     const Parameters deck = deck_of({test, problem.first_seed, problem.start}, p);
-    return predict_sizes(deck, SectionGeometry(deck)).core_seconds;
+    const SectionGeometry geometry(deck);
+    return predict_cost(deck, geometry, predict_sizes(deck, geometry), speed)
+        .core_seconds();
   };
   const double search = problem.search_seeds, check = problem.check_seeds;
   const auto is_free = [&](const std::string &name)

@@ -2,10 +2,14 @@
 #include "cases/geometry.h"
 #include "cases/join_choice.h"
 #include "cases/mechanism.h"
+#include "cases/predicted_cost.h"
 #include "cases/program.h"
-#include "cases/sizes.h"
+#include "cases/study_decks.h"
+#include "cases/study_members.h"
 
 #include <nlohmann/json.hpp>
+
+#include <omp.h>
 
 #include <cmath>
 #include <cstdarg>
@@ -31,10 +35,82 @@ std::string state_name(const Effect::State state)
   }
 }
 
-Json to_json(const Parameters &p)
+/// What all members of a study take.
+struct StudyCost
+{
+  std::size_t members = 0; ///< 0: no study
+  double core_seconds = 0.;
+};
+
+StudyCost predict_study(const RunOptions &options, MachineSpeed &speed)
+{
+  StudyCost cost;
+  if (!has_study(options.deck, options.overrides))
+    return cost;
+  const StudyParameters study = read_study(options.deck, options.overrides);
+  for (const MemberDeck &member :
+       read_members(options.deck, options.overrides, study, speed))
+  {
+    ++cost.members;
+    cost.core_seconds += member.core_seconds;
+  }
+  return cost;
+}
+
+/// All that is predicted of a deck.
+struct Prediction
+{
+  Prediction(const Parameters &p, const SectionGeometry &g, const RunOptions &options)
+      : threads(options.threads > 0 ? options.threads : omp_get_max_threads())
+      , sizes(predict_sizes(p, g))
+      , cost(predict_cost(p, g, sizes, speed, threads))
+      , study(predict_study(options, speed))
+  {
+  }
+
+  int threads;
+  MachineSpeed speed;
+  Sizes sizes;
+  PredictedCost cost;
+  StudyCost study;
+};
+
+std::string short_number(const double x)
+{
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2e", x);
+  return text;
+}
+
+Json to_json(const Prediction &prediction)
+{
+  const PredictedCost &cost = prediction.cost;
+  Json json = {{"steps", std::llround(cost.course.steps)},
+               {"solves", std::llround(cost.course.solves)},
+               {"shortening_at_end", cost.course.shortening},
+               {"core_seconds", cost.core_seconds()},
+               {"wall_seconds", cost.wall_seconds()},
+               {"threads", prediction.threads},
+               {"memory_bytes", std::llround(cost.memory)}};
+  for (const CostShare &share : cost.shares)
+    json["shares"].push_back(
+        {{"of", share.what}, {"core_seconds", share.core_seconds}});
+  for (const MachineSpeed::Measured &measured : prediction.speed.measured())
+    json["measured"].push_back({{"what", measured.what},
+                                {"size", std::llround(measured.size)},
+                                {"unit", measured.unit},
+                                {"nanoseconds", measured.nanoseconds}});
+  if (prediction.study.members > 0)
+    json["study"] = {{"members", prediction.study.members},
+                     {"core_seconds", prediction.study.core_seconds}};
+  return json;
+}
+
+Json to_json(const Parameters &p, const RunOptions &options)
 {
   const SectionGeometry g(p);
-  const Sizes sizes = predict_sizes(p, g);
+  const Prediction prediction(p, g, options);
+  const Sizes &sizes = prediction.sizes;
   const Mechanism e = expect_mechanism(p, g);
   Json json;
   json["title"] = p.title;
@@ -61,10 +137,9 @@ Json to_json(const Parameters &p)
                    {"layer_grains", std::llround(sizes.layer_grains)},
                    {"joints", std::llround(sizes.joints)},
                    {"cells", std::llround(sizes.cells)},
-                   {"dofs", std::llround(sizes.dofs)}};
-  json["prediction"] = {{"steps", std::llround(sizes.steps)},
-                        {"core_seconds", sizes.core_seconds},
-                        {"memory_bytes", std::llround(sizes.memory)}};
+                   {"dofs", std::llround(sizes.dofs)},
+                   {"multipliers", std::llround(sizes.multipliers)}};
+  json["prediction"] = to_json(prediction);
   for (const Effect &effect : list_effects(p))
     json["effects"][effect.name] = {{"state", state_name(effect.state)},
                                     {"reason", effect.reason}};
@@ -101,17 +176,47 @@ void print_mechanism(const Parameters &p, const Mechanism &e, std::ostream &out)
            "the "
            "layer folds and breaks at once\n";
 }
+
+void print_cost(const Prediction &prediction, std::ostream &out)
+{
+  const Sizes &sizes = prediction.sizes;
+  const PredictedCost &cost = prediction.cost;
+  const double seconds = cost.core_seconds();
+  out << "\nSize and cost (predicted)\n";
+  line(out, "  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f dofs",
+       sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells, sizes.dofs);
+  line(out, "  about %.2g steps%s, %s of one core, %.2f GB", cost.course.steps,
+       cost.course.shortening > 0.
+           ? (" to a shortening of " + short_number(cost.course.shortening)).c_str()
+           : "",
+       duration_text(seconds).c_str(), 1e-9 * cost.memory);
+  if (prediction.threads > 1)
+    line(out, "  %s on %d threads with a free core each",
+         duration_text(cost.wall_seconds()).c_str(), prediction.threads);
+  for (const CostShare &share : cost.shares)
+    line(out, "  %5.1f %%  %s", 100. * share.core_seconds / seconds, share.what.c_str());
+  if (prediction.study.members > 0)
+    line(out, "  all %zu members of the study: about %s of one core",
+         prediction.study.members, duration_text(prediction.study.core_seconds).c_str());
+  out << "Measured on this machine just now\n";
+  for (const MachineSpeed::Measured &measured : prediction.speed.measured())
+    line(out, "  %s: %.3g ns %s (%.0f of them)", measured.what.c_str(),
+         measured.nanoseconds, measured.unit.c_str(), measured.size);
+}
 } // namespace
 
-int check(const Parameters &p, const bool json, std::ostream &out)
+int check(const Parameters &p,
+          const RunOptions &options,
+          const bool json,
+          std::ostream &out)
 {
   if (json)
   {
-    out << to_json(p).dump(2) << '\n';
+    out << to_json(p, options).dump(2) << '\n';
     return 0;
   }
   const SectionGeometry g(p);
-  const Sizes sizes = predict_sizes(p, g);
+  const Prediction prediction(p, g, options);
   const Mechanism e = expect_mechanism(p, g);
   out << p.title << "\n\nScene\n";
   line(out, "  section   %.4g m long, from y = %.4g to %.4g m", g.length(), g.base(),
@@ -155,11 +260,7 @@ int check(const Parameters &p, const bool json, std::ostream &out)
   for (const Effect &effect : list_effects(p))
     line(out, "  %-21s %-12s %s", effect.name.c_str(), state_name(effect.state).c_str(),
          effect.reason.c_str());
-  out << "\nSize and cost (predicted)\n";
-  line(out, "  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f dofs",
-       sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells, sizes.dofs);
-  line(out, "  about %.2g steps, %.0f core seconds, %.2f GB", sizes.steps,
-       sizes.core_seconds, 1e-9 * sizes.memory);
+  print_cost(prediction, out);
   return 0;
 }
 } // namespace antiform::cases

@@ -30,15 +30,20 @@ void add_output(CLI::App &command, RunOptions &run)
       ->type_name("DIR");
 }
 
+void add_threads(CLI::App &command, RunOptions &run)
+{
+  command
+      .add_option("--threads", run.threads, "threads of each rank (OMP_NUM_THREADS)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+}
+
 void add_run(CLI::App &app, CommandLine &line)
 {
   CLI::App &command = *app.add_subcommand("run", "run a deck");
   add_deck(command, line.run);
   add_output(command, line.run);
-  command
-      .add_option("--threads", line.run.threads, "threads of each rank (OMP_NUM_THREADS)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+  add_threads(command, line.run);
   command.add_flag("--resume", line.run.resume,
                    "go on from state.h5 in the output directory");
   command
@@ -102,6 +107,7 @@ void add_check(CLI::App &app, CommandLine &line)
       "check",
       "what a deck makes: scene, effects and why, sizes, predicted time and memory");
   add_deck(command, line.run);
+  add_threads(command, line.run);
   command.add_flag("--json", line.json, "for programs");
   command.footer("Example:\n  antiform check cases/burial-depth/anticline.prm "
                  "--set \"Layer/Grains across=20\"");

@@ -69,7 +69,7 @@ int check_deck(const CommandLine &line)
   const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
   return parameters.has("calibration")
              ? check_cost_of_calibration(parameters, line.json, std::cout)
-             : check(parameters, line.json, std::cout);
+             : check(parameters, line.run, line.json, std::cout);
 }
 
 int theory_of_deck(const CommandLine &line)

@@ -126,8 +126,9 @@ int run_study(const RunOptions &given, const int jobs_wanted)
 {
   RunOptions options = given;
   const StudyParameters study = read_study(options.deck, options.overrides);
+  MachineSpeed speed;
   const std::vector<MemberDeck> decks =
-      read_members(options.deck, options.overrides, study);
+      read_members(options.deck, options.overrides, study, speed);
   prepare_study_directory(options);
   const DirectoryLock lock(options.output, "another study",
                            DirectoryLock::Children::let_go);

@@ -3,8 +3,8 @@
 #include "cases/calibrate.h"
 #include "cases/closed_forms.h"
 #include "cases/deck_reader.h"
+#include "cases/predicted_cost.h"
 #include "cases/run_deck.h"
-#include "cases/sizes.h"
 #include "cases/theory.h"
 #include "coupling/output/whole_file.h"
 #include "coupling/state_image.h"
@@ -19,8 +19,6 @@ namespace antiform::cases
 {
 namespace
 {
-constexpr double start_seconds = 0.3; // of a program
-
 const std::string checksum_line = "# A member of a study. Checksum ";
 
 std::string hexadecimal_crc(const std::string &text)
@@ -103,21 +101,35 @@ std::map<std::string, Result> theory_figures(const Parameters &p)
   return figures;
 }
 
-MemberDeck member_deck(const StudyMember &member, const Parameters &p)
+MemberDeck
+member_deck(const StudyMember &member, const Parameters &p, MachineSpeed &speed)
 {
   const RunDeck deck(p);
   MemberDeck result;
   result.member = member;
   result.checksum = hexadecimal_crc(deck.everything);
   result.text = effective_deck(p);
-  result.core_seconds = start_seconds + predict_sizes(p, SectionGeometry(p)).core_seconds;
+  const SectionGeometry geometry(p);
+  result.core_seconds =
+      predict_cost(p, geometry, predict_sizes(p, geometry), speed).core_seconds();
   return result;
 }
 } // namespace
 
+bool has_study(const std::string &file, const std::vector<std::string> &overrides)
+{
+  std::vector<std::string> ignored; // read_deck() tells
+  DeckText deck = scan_deck(file, ignored);
+  for (const std::string &text : overrides)
+    scan_override(text, deck, ignored);
+  return std::any_of(deck.entries.begin(), deck.entries.end(),
+                     [](const DeckLine &line) { return line.path == "Study/Vary"; });
+}
+
 std::vector<MemberDeck> read_members(const std::string &file,
                                      const std::vector<std::string> &overrides,
-                                     const StudyParameters &study)
+                                     const StudyParameters &study,
+                                     MachineSpeed &speed)
 {
   std::vector<std::string> ignored; // read_study() has found none
   const std::vector<StudyAxis> axes = read_axes(study.vary, ignored);
@@ -157,7 +169,7 @@ std::vector<MemberDeck> read_members(const std::string &file,
       const std::string scene = p.title;
       if (!names_title)
         p.title += (p.title.empty() ? "" : ": ") + member.label;
-      decks.push_back(member_deck(member, p));
+      decks.push_back(member_deck(member, p, speed));
       decks.back().scene = scene;
       if (collects_theory)
         decks.back().theory = theory_figures(p);

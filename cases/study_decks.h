@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cases/machine_speed.h"
 #include "cases/parameters.h"
 #include "cases/summary.h"
 
@@ -16,18 +17,23 @@ struct MemberDeck
   std::string scene;        ///< title of the study's deck
   std::string text;         ///< of its deck
   std::string checksum;     ///< of the deck and the files that it names
-  double core_seconds = 0.; ///< predicted, with the start of a program
+  double core_seconds = 0.; ///< predicted
   /// What 'antiform theory' says of its scene, "theory/critical/scene_smooth/wavelength";
   /// empty unless the study collects of it.
   std::map<std::string, Result> theory;
 };
 
+/// Whether the deck says what to vary.
+bool has_study(const std::string &file, const std::vector<std::string> &overrides);
+
 /// Read the deck of every member: the study's, its @p overrides and the member's values.
 /// Throws InputError with the problems of all members at once, those that several have
 /// named once; and when two members are the same run.
+/// \param speed by which their cost is predicted
 std::vector<MemberDeck> read_members(const std::string &file,
                                      const std::vector<std::string> &overrides,
-                                     const StudyParameters &study);
+                                     const StudyParameters &study,
+                                     MachineSpeed &speed);
 
 /// The deck of the study itself, by which it can be repeated; empty when the scene is
 /// none without the values of a member.

@@ -1,0 +1,202 @@
+#include "cases/predicted_course.h"
+
+#include "cases/mechanism.h"
+#include "cases/theory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace antiform::cases
+{
+namespace
+{
+/// Of walls that step and relax, measured on specimens up to the peak.
+constexpr double transits_per_load_step = 4.;
+/// Of a collapse that is followed to rest, by these walls or by events; measured on one
+/// specimen each.
+constexpr double transits_of_collapse = 400.;
+
+/// Share of the largest load step that events leave, on the average.
+constexpr double share_of_load_step = 0.6;
+
+/// Iterations of Newton's method for a load step, measured on the decks of cases/.
+constexpr double iterations_per_load_step = 3.;
+/// A step without equilibrium is halved, again and again.
+constexpr double iterations_to_give_up = 20.;
+
+/// Modulus of one layer of one rock that bends like the beds: as one when cemented, each
+/// on its own when they slide [Pa].
+double bending_modulus(const Parameters &p)
+{
+  const bool slide = p.has("beds") && p.beds.interface == "frictional";
+  double stretching = 0., moment = 0., bending = 0., below = 0.;
+  for (int bed = 0; bed < p.n_beds(); ++bed)
+  {
+    const double modulus = p.bed(bed).young_modulus, share = p.bed_share(bed);
+    const double lever = slide ? 0. : below + 0.5 * share;
+    stretching += modulus * share;
+    moment += modulus * share * lever;
+    bending += modulus * share * (share * share / 12. + lever * lever);
+    below += share;
+  }
+  return 12. * (bending - moment * moment / stretching);
+}
+
+/// Strength over UCS under the pressure on the sides, by Mohr-Coulomb with the friction
+/// of rock 1 [-].
+double gain_by_confinement(const Parameters &p, const LayerParameters &bed)
+{
+  if (p.confinement() == nullptr)
+    return 1.;
+  const double angle = TheoryOptions().friction_angle * M_PI / 180.;
+  const double slope = std::pow(std::tan(0.25 * M_PI + 0.5 * angle), 2);
+  return 1. + p.confinement()->pressure * slope / bed.compressive_strength;
+}
+
+/// Factor by which walls this fast put the peak of a bent layer off: measured 1.06 from
+/// 200 transits a millistrain to 100 (cases/burial-depth).
+double delay_by_rate(const Parameters &p)
+{
+  return p.follows_events() || p.walls.steps_and_relaxes()
+             ? 1.
+             : 1. + 12. / p.walls.transits_per_millistrain;
+}
+} // namespace
+
+double predict_strain_at_peak(const Parameters &p, const SectionGeometry &g)
+{
+  // Between platens all beds have one strain, and the weakest breaks first; in tension at
+  // three quarters of its bonds' strength, as specimens of rock 1 do.
+  double crushing = std::numeric_limits<double>::infinity(), parting = crushing,
+         thickest = 0.;
+  for (int k = 0; k < p.n_beds(); ++k)
+  {
+    const LayerParameters &bed = p.bed(k);
+    crushing = std::min(crushing, gain_by_confinement(p, bed) * bed.compressive_strength /
+                                      bed.young_modulus);
+    parting = std::min(parting, 0.75 * discrete::constants(bed.law()).tensile_strength /
+                                    bed.young_modulus);
+    thickest = std::max(thickest, p.bed_share(k) * g.thickness());
+  }
+  if (p.walls.action == "pull")
+    return parting;
+  if (g.amplitude() == 0.)
+    return crushing;
+  // A bent layer folds, if it can; or a force N and its moment N a0/2, which alone crush
+  // at N_0 and N_0 h/4, crush it together.
+  Parameters one = p;
+  one.layer.young_modulus = bending_modulus(p);
+  one.layer.compressive_strength = crushing * p.young_modulus();
+  const bool slide = p.has("beds") && p.beds.interface == "frictional";
+  const double h = slide ? thickest : g.thickness();
+  return crushing * delay_by_rate(p) *
+         std::min(expect_mechanism(one, g).pinned, 1. / (1. + 2. * g.amplitude() / h));
+}
+
+namespace
+{
+/// At which a run ends, roughly [-].
+double predict_shortening(const Parameters &p, const SectionGeometry &g)
+{
+  if (p.run.end_shortening > 0.)
+    return p.run.end_shortening;
+  const double peak = predict_strain_at_peak(p, g);
+  double multiple = p.run.strain_multiple_of_peak;
+  if (p.run.stress_ratio_of_peak > 0. && p.confinement() == nullptr)
+    // A bare specimen has lost half of its strength at once; the stress of a bent layer
+    // falls to its share somewhere on the way to the multiple.
+    multiple = std::min(multiple, p.is_specimen() ? 1.03 : 0.5 * (1. + multiple));
+  return std::min(multiple * peak, p.run.longest_shortening);
+}
+
+/// In which a wave passes the layer. For one mean grain of packings with this spread of
+/// sizes, measured: scaled to the least step of a matrix, to the mean of a bare layer, or
+/// real masses, for whose least grain all step. Smooth joints count as isotropic springs,
+/// which takes another tenth.
+double steps_of_transit(const Parameters &p, const SectionGeometry &g)
+{
+  const bool is_real = p.run.driver == "dynamic";
+  const double undamped = (is_real ? 2.4 : p.has("matrix") ? 1.6 : 1.8) *
+                          (p.has_smooth_joints() ? 1.1 : 1.);
+  return undamped * std::sqrt(1. + (p.has("damping") ? p.damping.coefficient : 0.)) /
+         p.run.safety * g.length() / g.diameter();
+}
+
+double
+steps_in_time(const Parameters &p, const SectionGeometry &g, const double shortening)
+{
+  const double transit = steps_of_transit(p, g);
+  const double transits_per_millistrain =
+      p.walls.steps_and_relaxes() ? transits_per_load_step * 1e-3 / p.walls.load_step
+                                  : p.walls.transits_per_millistrain;
+  double transits = transits_per_millistrain * 1e3 * shortening;
+  const double ramp = p.walls.ramp;
+  if (p.walls.steps_and_relaxes())
+    transits += shortening > predict_strain_at_peak(p, g) ? transits_of_collapse : 0.;
+  else // walls come up to speed evenly
+    transits = transits < 0.5 * ramp ? std::sqrt(2. * ramp * transits)
+                                     : transits + 0.5 * ramp;
+  if (p.confinement() != nullptr)
+    transits += 2. * p.confinement()->ramp;
+  return transit * transits;
+}
+
+/// Load steps up to the limit load of a yielding strut, beyond which there is no
+/// equilibrium.
+double load_steps_with_equilibria(const Parameters &p, const SectionGeometry &g)
+{
+  const double steps = p.has("walls") ? p.run.load_steps : 1.;
+  if (p.run.path != "load steps" || !p.has("walls") || !p.has_layer_mesh() ||
+      !p.layer_material.yields() || g.amplitude() == 0.)
+    return steps;
+  const Mechanism e = expect_mechanism(p, g);
+  const double limit =
+      std::min(1., e.guided) * p.layer.compressive_strength / p.layer.young_modulus;
+  return std::max(1., steps * std::min(1., 1.2 * limit / p.run.end_shortening));
+}
+} // namespace
+
+PredictedCourse predict_course(const Parameters &p, const SectionGeometry &g)
+{
+  PredictedCourse course;
+  if (p.run.driver == "buckling")
+  {
+    course.steps = 1.;
+    course.solves = p.matrix.refinement_rounds + 1.;
+    return course;
+  }
+  if (p.run.driver == "static")
+  {
+    course.shortening = p.has("walls") ? p.run.end_shortening : 0.;
+    course.steps = load_steps_with_equilibria(p, g);
+    course.solves = course.steps;
+    if (p.is_nonlinear())
+      course.solves = iterations_per_load_step * (course.steps + 1.);
+    if (p.has("walls") && course.steps < p.run.load_steps)
+      course.solves += iterations_to_give_up;
+    course.field_files = course.steps;
+    return course;
+  }
+  if (!p.has("walls"))
+    return course;
+  course.shortening = predict_shortening(p, g);
+  course.field_files = course.shortening / p.output.fields_interval;
+  if (p.follows_events())
+  {
+    course.steps = course.shortening / (share_of_load_step * p.walls.load_step);
+    course.samples = course.steps;
+    if (course.shortening > predict_strain_at_peak(p, g) &&
+        p.run.stress_ratio_of_peak > 0.)
+      course.collapse_steps = transits_of_collapse * steps_of_transit(p, g);
+  }
+  else
+  {
+    course.steps = steps_in_time(p, g, course.shortening);
+    course.samples = p.walls.steps_and_relaxes()
+                         ? course.shortening / p.walls.load_step
+                         : 1e3 * course.shortening * p.output.samples_per_millistrain;
+  }
+  return course;
+}
+} // namespace antiform::cases

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "cases/geometry.h"
+#include "cases/parameters.h"
+
+namespace antiform::cases
+{
+/// How far a run is expected to go, from its deck and closed forms. Counts are numbers
+/// without unit.
+struct PredictedCourse
+{
+  double shortening = 0.;     ///< at the end [-]
+  double steps = 0.;          ///< in time, of load or events; of buckling: 1
+  double solves = 0.;         ///< of systems of equations; 0 in time
+  double collapse_steps = 0.; ///< in time, between those of the event driver
+  double samples = 0.;        ///< lines of history.csv
+  double field_files = 0.;
+};
+
+/// Strain at which a layer or specimen fails, roughly [-].
+double predict_strain_at_peak(const Parameters &parameters,
+                              const SectionGeometry &geometry);
+
+PredictedCourse predict_course(const Parameters &parameters,
+                               const SectionGeometry &geometry);
+} // namespace antiform::cases
