@@ -1,0 +1,323 @@
+#!/usr/bin/python3
+"""What accuracy costs: error against processor time of every knob, and the record of it.
+
+    /usr/bin/python3 cases/accuracy/curves.py ANTIFORM DIRECTORY
+
+Runs the studies of this folder into DIRECTORY, one thread, one run after the other, packings
+made anew; what has ended is not run again. Then writes record.csv (which the program chooses
+by, 'set Accuracy = 5 %'), accuracy.md (its tables) and accuracy.svg/.png there, and says
+where an error does not fall as the time grows, beyond the scatter.
+"""
+import csv
+import datetime
+import math
+import os
+import statistics
+import subprocess
+import sys
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from study_runs import arguments_of, save, write_table  # noqa: E402
+
+FINER = {"grains-fine": ("grains", "Layer/Grains across = 30, 30, 30, 40, 40, 40, 60 & "
+                         "Layer/Seed = 1, 2, 3, 1, 2, 3, 1"),
+         "strength-fine": ("strength",
+                           "Layer/Grains across = 30 ; Layer/Seed = seeds 1 to 5"),
+         "rate-slow": ("rate", "Walls/Transits per millistrain = 800 ; "
+                       "Layer/Seed = seeds 1 to 3"),
+         "specimen-events": ("specimen-rate", "Walls/Loading = event driver ; "
+                             "Layer/Seed = seeds 1 to 10")}
+STUDIES = ("grains", "strength", "balance", "rate", "specimen-rate", "relaxation", "damping",
+           "cells", "overlap", "joins", "elements", *FINER)
+MACHINE = "AMD EPYC, shared"
+PEAK, CRITICAL = "peak_stress_Pa", "critical_stress_Pa"
+
+
+def make(antiform, directory, name):
+    """The study, gone on with where it was left; its lines."""
+    deck, extra = FINER.get(name, (name, None))
+    command = [antiform, "study", os.path.join(HERE, deck + ".prm"), "-o",
+               os.path.join(directory, name), "--jobs", "1"]
+    if extra:
+        command += ["--set", "Study/Vary=" + extra]
+    done = subprocess.run(command, env={**os.environ, "ANTIFORM_CACHE": "off",
+                                        "OMP_THREAD_LIMIT": "1"})
+    if done.returncode not in (0, 2):
+        sys.exit(f"the study {name} has not been made")
+    return lines_of(directory, name)
+
+
+def lines_of(directory, name):
+    with open(os.path.join(directory, name, "study.csv")) as file:
+        lines = [line for line in csv.DictReader(file) if line["status"] == "completed"]
+    for line in lines:
+        for key, text in line.items():
+            try:
+                line[key] = float(text)
+            except ValueError:
+                pass
+    return lines
+
+
+class Knob:
+    """Errors of one entry's values, packing by packing."""
+
+    def __init__(self, name, entry, of, truth, default=None, label=None):
+        self.name, self.entry, self.of, self.truth = name, entry, of, truth
+        self.default, self.label = default, label or entry.split("/")[-1].lower()
+        self.rows = []
+
+    def add(self, value, errors, lines, scatter=None):
+        """From coarse to fine. @p scatter: where it is not that of the errors."""
+        if scatter is None:
+            scatter = statistics.stdev(errors) if len(errors) > 1 else 0.
+        self.rows.append({
+            "knob": self.name, "entry": self.entry, "value": f"{value:g}",
+            "error_percent": round(100. * statistics.mean(errors), 4),
+            "scatter_percent": round(100. * scatter, 4), "packings": len(errors),
+            "cpu_seconds": round(statistics.median(l["cpu_seconds"] for l in lines), 3),
+            "grains": round(statistics.mean(l.get("sizes_grains", 0.) for l in lines)),
+            "default": "yes" if value == self.default else "no", "of": self.of,
+            "truth": self.truth, "measured": f"{datetime.date.today()} {MACHINE}"})
+
+    def by(self, column, lines, quantity, truth_of, coarse_to_fine):
+        """A row of each value of @p column; truth_of(line) is what it should be."""
+        for value in coarse_to_fine:
+            of = [line for line in lines if line[column] == value]
+            if of:
+                self.add(value, [line[quantity] / truth_of(line) - 1. for line in of], of)
+        return self
+
+
+def limit_of(lines, quantity, power):
+    """The value that (1 - c/n)^power tends to, by least squares over the means."""
+    sizes = sorted({line["grains_across"] for line in lines})
+    means = [statistics.mean(line[quantity] for line in lines if line["grains_across"] == n)
+             for n in sizes]
+    # A straight line of mean^(1/power) over 1/n; its value at 0.
+    x, y = [1. / n for n in sizes], [m ** (1. / power) for m in means]
+    mx, my = statistics.mean(x), statistics.mean(y)
+    slope = sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+    top = my - slope * mx
+    print(f"{quantity}: limit {top ** power:.5g}, c = {-slope / top:.3f}; measured over "
+          "fitted less 1: " + ", ".join(
+              f"{n:g}: {100. * (m / (top + slope / n) ** power - 1.):+.2f} %"
+              for n, m in zip(sizes, means)))
+    return top ** power
+
+
+def paired(lines, quantity, *columns):
+    """By seed (and other columns): the truth of the same packing."""
+    of = {tuple(line[c] for c in columns): line[quantity] for line in lines}
+    return lambda line: of[tuple(line[c] for c in columns)]
+
+
+def grains_knobs(studies):
+    entry, default = "Layer/Grains across", 12.
+    elastic = studies["grains"] + studies["grains-fine"]
+    sizes = sorted({line["grains_across"] for line in elastic})
+    knobs = []
+    for name, quantity, of, power in (
+            ("grains in bending", CRITICAL, "critical stress", 3.),
+            ("grains in stiffness", "layer_plane_modulus_Pa", "modulus of the section", 1.)):
+        limit = limit_of(elastic, quantity, power)
+        truth = f"the limit of (1 - c/n)^{power:g}" if power > 1. else "the limit of 1 - c/n"
+        knobs.append(Knob(name, entry, of, truth, default, name).by(
+            "grains_across", elastic, quantity, lambda line, limit=limit: limit, sizes))
+    strong = studies["strength"] + studies["strength-fine"]
+    sizes = sorted({line["grains_across"] for line in strong})
+    finest = statistics.mean(line[PEAK] for line in strong
+                             if line["grains_across"] == sizes[-1])
+    knobs.append(Knob("grains in strength", entry, "peak stress of a specimen",
+                      f"the mean of {sizes[-1]:g} grains across", default,
+                      "grains in strength").by(
+        "grains_across", strong, PEAK, lambda line: finest, sizes[:-1]))
+    return knobs
+
+
+def loading_knobs(studies):
+    events = "the event driver at a tolerance of 1e-4; same packings"
+    balance = studies["balance"]
+    finest = [line for line in balance if line["balance_tolerance"] == 1e-4]
+    truth = paired(finest, PEAK, "seed")
+    of = "peak stress of a bent layer"
+    knobs = [
+        Knob("loading rate of a layer", "Walls/Transits per millistrain", of, events,
+             300., "loading rate of a bent layer").by(
+            "transits_per_millistrain", studies["rate"] + studies["rate-slow"], PEAK, truth,
+            (50., 100., 200., 400., 800.)),
+        Knob("loading rate of a specimen", "Walls/Transits per millistrain",
+             "peak stress of a specimen", "the event driver; same packings", 300.,
+             "loading rate of a specimen").by(
+            "transits_per_millistrain", studies["specimen-rate"], PEAK,
+            paired(studies["specimen-events"], PEAK, "seed"), (25., 50., 100., 200., 400.)),
+        Knob("balance tolerance", "Walls/Balance tolerance", of, events, 1e-3).by(
+            "balance_tolerance", balance, PEAK, truth, (9e-3, 3e-3, 1e-3, 3e-4))]
+    stepped = studies["relaxation"]
+    knobs.append(Knob("load step", "Walls/Load step", of, events, 4e-5).by(
+        "load_step", [l for l in stepped if l["relaxation_tolerance"] == 1e-4], PEAK, truth,
+        (1.6e-4, 8e-5, 4e-5, 2e-5)))
+    knobs.append(Knob("relaxation tolerance", "Walls/Relaxation tolerance", of, events,
+                      1e-4).by(
+        "relaxation_tolerance", [l for l in stepped if l["load_step"] == 4e-5], PEAK, truth,
+        (1e-2, 1e-3, 1e-4, 1e-5)))
+    damped = studies["damping"]
+    knobs.append(Knob("damping", "Damping/Coefficient", of, events, 0.7,
+                      "damping coefficient").by(
+        "coefficient", [l for l in damped if l["step_safety"] == 0.9], PEAK, truth,
+        (0.9, 0.7, 0.5, 0.3)))
+    knobs.append(Knob("step safety", "Run/Step safety", of, events, 0.9).by(
+        "step_safety", [l for l in damped if l["coefficient"] == 0.7], PEAK, truth,
+        (0.9, 0.6, 0.3)))
+    return knobs
+
+
+def join_knobs(studies):
+    alone = [line for line in studies["joins"]
+             if line["layer_representation"] == line["matrix_representation"] == "grains"]
+    truth = paired(alone, CRITICAL, "seed", "stiffness_contrast")
+    at_100 = paired([line for line in alone if line["stiffness_contrast"] == 100.],
+                    CRITICAL, "seed")
+    of, words = "critical stress of a buried layer", "grains everywhere; same packings"
+    overlap = studies["overlap"]
+    knobs = [
+        Knob("cells beside grains", "Matrix/Cell size ratio", of, words, 2.).by(
+            "cell_size_ratio", studies["cells"], CRITICAL, at_100, (8., 4., 2., 1.)),
+        Knob("overlap", "Bridging domain/Overlap width ratio", of, words, 4.).by(
+            "overlap_width_ratio", [l for l in overlap if l["buffer_width_ratio"] == 4.],
+            CRITICAL, at_100, (2., 4., 8., 12.)),
+        Knob("buffer", "Bridging domain/Buffer width ratio", of, words, 4.).by(
+            "buffer_width_ratio", [l for l in overlap if l["overlap_width_ratio"] == 8.],
+            CRITICAL, at_100, (1., 2., 4., 8.))]
+    for name, entry, is_it in (
+            ("representation: continuum", "Layer/Representation",
+             lambda l: l["layer_representation"] == "continuum"),
+            ("representation: surface interface", "Matrix/Join",
+             lambda l: l["join"] == "surface interface"),
+            ("representation: bridging domain", "Matrix/Join",
+             lambda l: l["matrix_representation"] == "continuum"
+             and l["layer_representation"] == "grains" and l["join"] == "bridging domain")):
+        knobs.append(Knob(name, "Matrix/Stiffness contrast", of, words, None, name).by(
+            "stiffness_contrast", [l for l in studies["joins"] if is_it(l)], CRITICAL,
+            truth, (20., 100., 1e4)))
+    return knobs
+
+
+def element_knobs(studies):
+    lines = studies["elements"]
+    for line in lines:
+        line["cell"] = line["cell_size_ratio"] / 4.  # over the layer's thickness
+    fine = {line["cell"]: line[CRITICAL] for line in lines if line["element_degree"] == 2.}
+    cells = sorted(fine)
+    limit = fine[cells[0]] + (fine[cells[0]] - fine[cells[1]]) / (2. ** 4 - 1.)
+    return [Knob(name, "Matrix/Cell size ratio", "critical stress of a buried layer",
+                 "the limit of the two finest quadratic meshes", None, name).by(
+        "cell", [l for l in lines if l["element_degree"] == degree], CRITICAL,
+        lambda line: limit, sorted({l["cell"] for l in lines
+                                    if l["element_degree"] == degree}, reverse=True))
+        for name, degree in (("bilinear cells", 1.), ("quadratic cells", 2.))]
+
+
+def where_not_monotone(knob):
+    """Neighbours of which the dearer one is further off, beyond their standard errors."""
+    for coarse, fine in zip(knob.rows, knob.rows[1:]):
+        known = math.hypot(*(row["scatter_percent"] / math.sqrt(row["packings"])
+                             for row in (coarse, fine)))
+        rise = abs(fine["error_percent"]) - abs(coarse["error_percent"])
+        if rise > 2. * known:
+            yield (f"{knob.name}: {coarse['value']} to {fine['value']}: error "
+                   f"{coarse['error_percent']:+.2f} to {fine['error_percent']:+.2f} %")
+
+
+def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
+    x = [row["cpu_seconds"] for row in knob.rows]
+    y = [max(abs(row["error_percent"]), 1e-3) for row in knob.rows]
+    low = [max(a - row["scatter_percent"], 0.05 * a) for a, row in zip(y, knob.rows)]
+    high = [a + row["scatter_percent"] for a, row in zip(y, knob.rows)]
+    axes.errorbar(x, y, yerr=[[a - b for a, b in zip(y, low)],
+                              [b - a for a, b in zip(y, high)]],
+                  color=colour, marker=marker, markersize=5, markerfacecolor="white",
+                  markeredgewidth=1.4, linewidth=1.2, elinewidth=0.8, capsize=2,
+                  label=knob.label)
+    for a, b, row in zip(x, y, knob.rows):
+        axes.annotate(row["value"], (a, b), textcoords="offset points", xytext=(5, 4),
+                      fontsize=8, color=colour)
+        if row["default"] == "yes":
+            axes.plot([a], [b], marker="o", markersize=13, markerfacecolor="none",
+                      markeredgecolor="black", linestyle="none")
+
+
+def draw(knobs, directory):
+    panels = [[k] for k in knobs if not k.name.startswith("representation")
+              and "linear" not in k.name and "quadratic" not in k.name]
+    panels.append([k for k in knobs if k.name in ("bilinear cells", "quadratic cells")])
+    panels.append([k for k in knobs if k.name.startswith("representation")])
+    columns = 3
+    lines = -(-len(panels) // columns)
+    figure, axes = plt.subplots(lines, columns, figsize=(11.4, 2.75 * lines + 0.7))
+    for place, of in zip(axes.flat, panels):
+        for knob, colour, marker in zip(of, ("#1f4fa8", "#c0392b", "#2e8b57"), "osD"):
+            draw_one(place, knob, colour, marker)
+        place.set(xscale="log", yscale="log")
+        place.grid(color="#dddddd", linewidth=0.6)
+        place.margins(x=0.2, y=0.15)
+        if len(of) == 1:
+            place.set_title(of[0].label, fontsize=10, loc="left")
+        else:
+            place.set_title("finite elements, cell over h" if "cells" in of[0].name
+                            else "representation, by contrast", fontsize=10, loc="left")
+            place.legend([k.label.replace("representation: ", "") for k in of],
+                         frameon=False, fontsize=8)
+        place.tick_params(labelsize=8)
+    for place in axes.flat[len(panels):]:
+        place.set_visible(False)
+    for row in axes:
+        row[0].set_ylabel("error [%]", fontsize=9)
+    for place in axes[-1]:
+        place.set_xlabel("processor time of a run [s]", fontsize=9)
+    figure.suptitle("What accuracy costs", x=0.06, ha="left", fontsize=13, weight="bold")
+    figure.text(0.06, 1. - 0.46 / figure.get_figheight(), "Error of the mean of several "
+                "packings; bars: standard deviation of one. The ring marks the default.",
+                fontsize=10, va="top")
+    figure.tight_layout(rect=(0., 0., 1., 1. - 0.55 / figure.get_figheight()))
+    save(figure, directory, "accuracy")
+
+
+def tables(knobs):
+    text = ""
+    for knob in knobs:
+        text += (f"### {knob.label[0].upper() + knob.label[1:]}\n\n`{knob.entry}`; error of "
+                 f"the {knob.of} against {knob.truth}.\n\n| value | error | scatter of one "
+                 "packing | packings | grains | CPU s |\n"
+                 "| --- | --- | --- | --- | --- | --- |\n")
+        for row in knob.rows:
+            mark = " (default)" if row["default"] == "yes" else ""
+            text += (f"| {row['value']}{mark} | {row['error_percent']:+.3g} % | "
+                     f"{row['scatter_percent']:.2g} % | {row['packings']} | "
+                     f"{row['grains']:,} | {row['cpu_seconds']:.2g} |\n")
+        text += "\n"
+    return text
+
+
+def main():
+    arguments = arguments_of(__doc__)
+    studies = {name: make(arguments.antiform, arguments.directory, name)
+               for name in STUDIES}
+    knobs = (grains_knobs(studies) + loading_knobs(studies) + join_knobs(studies)
+             + element_knobs(studies))
+    write_table([row for knob in knobs for row in knob.rows],
+                os.path.join(arguments.directory, "record.csv"))
+    with open(os.path.join(arguments.directory, "accuracy.md"), "w") as file:
+        file.write(tables(knobs))
+    draw(knobs, arguments.directory)
+    found = [text for knob in knobs for text in where_not_monotone(knob)]
+    print("Errors that do not fall as the time grows:\n  " + "\n  ".join(found or ["none"]))
+
+
+if __name__ == "__main__":
+    main()
