@@ -72,6 +72,56 @@ TEST(Fractures, ASpecimenSlidesOnAPlaneAtTheStressOfMohrsCircle)
     }
 }
 
+// Jaeger's plane of weakness (1960): with beta from the axis to the plane's normal,
+//   sigma_1 - sigma_3 = 2 (c + mu sigma_3) / ((1 - mu cot beta) sin 2 beta).
+// A membrane puts sigma_3 on the faces of both blocks, as the law has it.
+TEST(Fractures, StrengthIsThatOfThePlaneOfWeaknessUnlessItCannotSlide)
+{
+  const double mu = std::tan(20. * degree), p = 10e6;
+  const auto run_in_membrane = [&](const std::string &components,
+                                   const std::vector<std::string> &more)
+  {
+    const TemporaryFolder folder;
+    std::vector<std::string> entries{"Components=" + components + ", damping",
+                                     "Membrane/Pressure=10e6"};
+    entries.insert(entries.end(), more.begin(), more.end());
+    return run_specimen(entries, folder.path("run"));
+  };
+  const auto run_with_plane = [&](const double dip, const std::string &until)
+  {
+    const std::string x = std::to_string(0.06 * std::cos(dip * degree)),
+                      y = std::to_string(0.06 * std::sin(dip * degree));
+    return run_in_membrane("layer, walls, membrane, fractures",
+                           {"Fractures/List=-" + x + " -" + y + " " + x + " " + y,
+                            "Fractures/Friction angle=20", until});
+  };
+  // The membrane runs through the centres of the outer grains: on either side half a
+  // diameter, 1/28 of the width, of what the plane cuts is not pressed upon.
+  const double on_blocks = p * (1. - 1. / 14.);
+  for (const double dip : {32., 40., 50.})
+  {
+    SCOPED_TRACE(dip);
+    const nlohmann::json run = run_with_plane(dip, "Run/End shortening=1.2e-3");
+    const double beta = (90. - dip) * degree;
+    const double slides =
+        on_blocks * (1. + 2. * mu / ((1. - mu / std::tan(beta)) * std::sin(2. * beta)));
+    // Which grain of the outer row the plane passes is known to half a diameter, 1/28.
+    EXPECT_NEAR(result(run, "peak_stress") / slides, 1., 1. / 28.);
+    EXPECT_GT(result(run, "largest_fracture_slip"), 1e-4); // a tenth of all shortening
+  }
+  // Nearer to across than its angle of friction (beta = 12 degrees), or along the axis, the
+  // plane cannot slide: ten times as strong, as the rock, whose packings scatter by 5 %
+  // and which has lost a row of joints.
+  const std::string until = "Run/Stress ratio of peak=0.8";
+  const nlohmann::json intact = run_in_membrane("layer, walls, membrane", {until});
+  for (const double dip : {78., 0.})
+  {
+    SCOPED_TRACE(dip);
+    const nlohmann::json run = run_with_plane(dip, until);
+    EXPECT_NEAR(result(run, "peak_stress") / result(intact, "peak_stress"), 1., 0.1);
+  }
+}
+
 TEST(Fractures, AHealedPlaneHoldsUpToItsCohesion)
 {
   const TemporaryFolder folder;
