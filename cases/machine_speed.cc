@@ -68,7 +68,7 @@ double seconds_of(const std::function<void()> &work)
 }
 
 // Beyond these the pace changes little, and making the sample would take too long.
-constexpr double least_grains = 500., most_grains = 65536., most_dofs = 8000.;
+constexpr double least_grains = 500., most_grains = 262144., most_dofs = 8000.;
 
 /// A bonded strip of equal disks that vibrates a little and does not break, numbered
 /// along it as the layers of scenes are; units of its own.

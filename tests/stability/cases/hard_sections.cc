@@ -1,7 +1,7 @@
 // Sections at the edge of what a mesh can hold: covers of a hundredth and of a hundred
 // thicknesses, a matrix ten thousand times as soft as the layer and one that hardly
-// changes its volume. They buckle as the closed forms say, or are refused with the
-// remedy.
+// changes its volume. They buckle as the closed forms say, break with a closed ledger of
+// energies, or are refused with the remedy.
 #include "support/tiny_run.h"
 
 namespace hard_sections_tests
@@ -50,6 +50,40 @@ TEST(HardSection, BucklesAsTheClosedFormSays)
                 scene.name == "stuck-sliver" ? 0.03 : 0.02)
         << scene.name;
     EXPECT_EQ(result(summary, "half_waves"), 4.) << scene.name;
+  }
+}
+
+// A layer of grains breaks below a cover of 0.1 m, which no overlap fits into, and below
+// one of a kilometre.
+TEST(HardSection, ClosesItsLedgerWhileItsLayerBreaks)
+{
+  const TemporaryFolder folder;
+  const struct
+  {
+    std::string name;
+    std::vector<std::string> entries;
+  } scenes[] = {{"sliver",
+                 {"Matrix/Burial depth ratio=0.01", "Matrix/Cover rows=1",
+                  "Matrix/Join=surface interface"}},
+                {"sliver-of-grains",
+                 {"Matrix/Burial depth ratio=0.01", "Matrix/Representation=grains"}},
+                {"deep",
+                 {"Matrix/Burial depth ratio=100", "Matrix/Largest cell ratio=24"}}};
+  for (const auto &scene : scenes)
+  {
+    SCOPED_TRACE(scene.name);
+    const Outcome outcome = run_program(
+        "run " ANTIFORM_SOURCE_DIR "/cases/comparison/quick.prm -o " +
+        folder.path(scene.name) +
+        set({"Layer/Breakable=true", "Run/End shortening=2.5e-3",
+             "Walls/Transits per millistrain=50"}) +
+        set(scene.entries));
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json summary = summary_of(folder.path(scene.name));
+    EXPECT_GT(result(summary, "crack_count"), 100.);
+    // Nothing is lost but where bonds break within a step: some 1e-5 here.
+    EXPECT_LT(summary.at("energy").at("closure_error").get<double>(), 1e-2);
+    EXPECT_GT(summary.at("energy").at("boundary_work").get<double>(), 0.);
   }
 }
 

@@ -162,8 +162,7 @@ TEST(BucklingOfGrains, HasOnlyTheEffectsThatAreLinear)
   };
   EXPECT_NEAR(ratio("grains"), 1., 0.1);
   EXPECT_NEAR(ratio("cells"), 1., 0.01);
-  // Counted as two a cell: each of two meshes of some 10 rows has a row of nodes more.
-  EXPECT_NEAR(ratio("dofs"), 0.85, 0.1);
+  EXPECT_NEAR(ratio("dofs"), 1., 0.01);
   const double memory = checked.at("prediction").at("memory_bytes").get<double>() /
                         summary.at("peak_memory_bytes").get<double>();
   EXPECT_GT(memory, 0.5);
