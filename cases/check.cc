@@ -252,7 +252,15 @@ int check(const Parameters &p,
     if (!p.matrix.why_join.empty())
       out << "  chosen    " << join_in_words(p) << '\n';
   }
-  if (p.has("beds"))
+  if (p.bends())
+    line(out,
+         "  walls     turn to %.3g degrees each, which puts a strain of %.3g on the "
+         "faces of a straight layer",
+         p.walls.end_rotation, p.end_bending());
+  if (p.bends())
+    out << "\nMechanism: bent by its ends, which leave the walls above: nothing "
+           "bifurcates\n";
+  else if (p.has("beds"))
     out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";
   else if (!p.is_specimen())
     print_mechanism(p, e, out);

@@ -392,7 +392,13 @@ TheorySection
 mechanism_section(const Parameters &p, const SectionGeometry &g, const Confinement &c)
 {
   TheorySection section{"mechanism", "Mechanism to expect", {}};
-  if (p.has("walls") && p.walls.action == "pull")
+  if (p.bends())
+  {
+    section.rows.push_back(no_row("by_thesis_plot", "by the thesis' plot",
+                                  "its ends are turned: it bends, nothing bifurcates"));
+    return section;
+  }
+  if (p.has("walls") && p.walls.pulls())
   {
     section.rows.push_back(no_row("by_thesis_plot", "by the thesis' plot",
                                   "the grips pull: the layer tears"));

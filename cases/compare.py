@@ -280,7 +280,7 @@ def main():
     try:
         if not problems:
             for run in runs:
-                run.measures = measures(run, min(r.last_shortening() for r in runs))
+                run.measures = measures(run, min(r.last_loading() for r in runs))
             groups = grouped(runs)
             demand_one_scene(groups)
             differing = name_groups(groups)

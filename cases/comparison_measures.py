@@ -23,13 +23,15 @@ def in_units(factor, unit):
 MEASURES = (
     Measure("stiffness", f"stiffness, up to {BELOW:.0%} of the peak", "Pa",
             in_units(1e-9, "GPa")),
+    Measure("peak_moment", "peak moment", "N m", in_units(1e-6, "MN m")),
+    Measure("rotation_at_peak", "rotation at the peak", "deg", in_units(1., "degrees")),
     Measure("peak_stress", "peak stress", "Pa", in_units(1e-6, "MPa")),
     Measure("strain_at_peak", "strain at the peak", "-", in_units(100., "%")),
     Measure("fold_amplitude", f"fold amplitude at {SHARE:.0%} of the peak", "m",
             in_units(1., "m")),
     Measure("amplification", f"growth of the fold up to there", "m", in_units(1., "m")),
     Measure("cracks_at_peak", "cracks at the peak", "-", lambda x: f"{x:.0f}"),
-    Measure("cracks_at_end", "cracks at the last common shortening", "-",
+    Measure("cracks_at_end", "cracks at the last common loading", "-",
             lambda x: f"{x:.0f}"),
     Measure("grains", "grains", "-", lambda x: f"{x:.0f}", False),
     Measure("dofs", "degrees of freedom of the mesh", "-", lambda x: f"{x:.0f}", False),
@@ -39,20 +41,24 @@ MEASURES = (
 )
 
 
-def measures(run, last_shortening):
-    """{measure: value or None} of a run, cracks also at @p last_shortening, that of the run
+def measures(run, last_loading):
+    """{measure: value or None} of a run, cracks also at @p last_loading, that of the run
     that went least far."""
     history, summary = run.history, run.summary
     values = {measure.name: None for measure in MEASURES}
-    x = run.sign() * history["shortening"]
+    x = run.loading().values
     if "axial_stress_Pa" in history:
-        stress = run.sign() * history["axial_stress_Pa"]
+        stress = run.response().values
         top = int(np.argmax(stress))
         first = np.flatnonzero(stress[:top + 1] <= BELOW * stress[top])
-        if len(first) > 1 and np.ptp(x[first]) > 0.:
-            values["stiffness"] = float(np.polyfit(x[first], stress[first], 1)[0])
-        values["peak_stress"] = float(stress[top])
-        values["strain_at_peak"] = float(x[top])
+        if run.bends():
+            values["peak_moment"] = float(stress[top])
+            values["rotation_at_peak"] = float(x[top])
+        else:
+            if len(first) > 1 and np.ptp(x[first]) > 0.:
+                values["stiffness"] = float(np.polyfit(x[first], stress[first], 1)[0])
+            values["peak_stress"] = float(stress[top])
+            values["strain_at_peak"] = float(x[top])
         if "fold_amplitude_m" in history:
             there = int(np.argmax(stress >= SHARE * stress[top]))
             amplitude = history["fold_amplitude_m"]
@@ -61,7 +67,7 @@ def measures(run, last_shortening):
         if "cracks_tensile" in history:
             cracks = history["cracks_tensile"] + history["cracks_shear"]
             values["cracks_at_peak"] = float(cracks[top])
-            values["cracks_at_end"] = float(cracks[x <= last_shortening * (1. + 1e-9)][-1])
+            values["cracks_at_end"] = float(cracks[x <= last_loading * (1. + 1e-9)][-1])
     for name in ("grains", "dofs"):
         values[name] = float(summary["sizes"].get(name, 0)) or None
     values["wall_seconds"] = summary["wall_seconds"]
@@ -80,13 +86,13 @@ def grain_diameter(run):
 def zone_distance(a, b):
     """How far the cracks of @p a along the layer must be moved in the mean to lie as those of
     @p b do (Wasserstein distance of their places before shortening), in grain diameters of
-    @p a up to the last common shortening; None without cracks in both."""
-    last = min(a.last_shortening(), b.last_shortening())
+    @p a up to the last common loading; None without cracks in both."""
+    last = min(a.last_loading(), b.last_loading())
     places = []
     for run in (a, b):
         if run.cracks is None or not len(run.cracks["x_m"]):
             return None
-        seen = run.sign() * run.cracks["shortening"] <= last
+        seen = run.sign() * run.cracks[run.loading_column()] <= last
         if not seen.any():
             return None
         places.append(run.cracks["reference_x_m"][seen])
@@ -152,11 +158,11 @@ def local_coordinates(corners, point):
     return at
 
 
-def displacement_at(run, points, shortening):
-    """At @p points and a shortening between two field files, linear between them."""
+def displacement_at(run, points, loading):
+    """At @p points and a loading between two field files, linear between them."""
     times = np.abs(np.array(run.times))
-    after = int(np.clip(np.searchsorted(times, shortening), 1, len(times) - 1))
-    share = (shortening - times[after - 1]) / (times[after] - times[after - 1])
+    after = int(np.clip(np.searchsorted(times, loading), 1, len(times) - 1))
+    share = (loading - times[after - 1]) / (times[after] - times[after - 1])
     values = []
     for index in (after - 1, after):
         frame = run.frame(run.step_numbers[index])
@@ -190,9 +196,7 @@ def displacement_difference(a, b):
     None where one has no fields to compare."""
     if len(a.times) < 2 or len(b.times) < 2 or "axial_stress_Pa" not in a.history:
         return None
-    peaks = [abs(run.history["shortening"][np.argmax(run.sign()
-                                                     * run.history["axial_stress_Pa"])])
-             for run in (a, b)]
+    peaks = [run.loading().values[np.argmax(run.response().values)] for run in (a, b)]
     times = np.abs(np.array(a.times))
     early = times[times <= min(min(peaks), np.abs(b.times).max())]
     if not len(early) or early[-1] == 0.:

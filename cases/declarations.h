@@ -189,6 +189,8 @@ void check_membrane_of_mesh(const Parameters &parameters, std::vector<Finding> &
 void check_join(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that the event driver adds.
 void check_event_driver(const Parameters &parameters, std::vector<Finding> &findings);
+/// The part of it that walls that turn add.
+void check_turning_walls(const Parameters &parameters, std::vector<Finding> &findings);
 /// The part of it that a calibration adds.
 void check_calibration(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases

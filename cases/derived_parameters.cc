@@ -191,6 +191,11 @@ double Parameters::section_length() const
   return layer_length() * (1. + ends);
 }
 
+double Parameters::end_bending() const
+{
+  return M_PI / 180. * walls.end_rotation * strain_per_radian();
+}
+
 double Parameters::grain_diameter() const
 {
   return layer.thickness / layer.grains_across;

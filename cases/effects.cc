@@ -134,7 +134,10 @@ std::vector<Effect> list_effects(const Parameters &p)
       !matrix ? "there is no matrix" : "the base is held by the mesh or the foundation"));
   for (const std::string name : {"gravity", "surface pressure", "walls", "damping"})
     list.push_back(
-        choose(name, p.has(name), "listed in Components", "not listed in Components"));
+        choose(name, p.has(name),
+               name == "walls" && p.bends() ? "listed in Components; they turn"
+                                            : "listed in Components",
+               "not listed in Components"));
   list.push_back(choose("servo walls", p.has("servo walls"), "listed in Components",
                         "not listed in Components"));
   list.push_back(choose("membrane", p.has("membrane"), "listed in Components",

@@ -114,14 +114,15 @@ void write_joints(const std::string &path, const coupling::GrainState &state)
 }
 
 /// Cracks where they are now: carried by one of the two grains.
-void write_cracks(const std::string &path,
-                  const coupling::GrainState &state,
-                  const double shortening)
+/// \param field_time of the file
+void write_cracks(const std::string &path, const Scene &scene, const double field_time)
 {
+  const coupling::GrainState &state = scene.grains->state;
   Points points;
   Field mode{"mode", 1, {}}, length{"length_m", 1, {}},
       orientation{"orientation_rad", 1, {}};
-  Field time{"time_s", 1, {}}, when{"shortening", 1, {}}, layer{"layer", 1, {}};
+  Field time{"time_s", 1, {}}, layer{"layer", 1, {}};
+  Field when{scene.parameters.bends() ? "wall_rotation_deg" : "shortening", 1, {}};
   const discrete::Grains &grains = state.grains;
   for (const discrete::Crack &crack : state.cracks)
   {
@@ -134,7 +135,7 @@ void write_cracks(const std::string &path,
     length.values.push_back(crack.length);
     orientation.values.push_back(crack.orientation);
     time.values.push_back(crack.time);
-    when.values.push_back(shortening);
+    when.values.push_back(field_time);
     layer.values.push_back(crack.layer);
   }
   coupling::write_points_vtu(path, points,
@@ -144,9 +145,9 @@ void write_cracks(const std::string &path,
 
 void write_field_files(const Scene &scene,
                        const std::string &directory,
-                       const std::vector<double> &shortenings)
+                       const std::vector<double> &times)
 {
-  const std::size_t number = shortenings.size() - 1;
+  const std::size_t number = times.size() - 1;
   std::vector<std::string> groups;
   if (scene.mesh)
     groups.push_back("continuum");
@@ -166,15 +167,15 @@ void write_field_files(const Scene &scene,
     else if (group == "fractures")
       write_fractures(path, scene);
     else
-      write_cracks(path, scene.grains->state, shortenings.back());
+      write_cracks(path, scene, times.back());
   }
   if (scene.mesh && dealii::Utilities::MPI::this_mpi_process(
                         scene.solid->dof_handler().get_communicator()) != 0)
     return;
   std::vector<coupling::PvdEntry> entries;
-  for (std::size_t k = 0; k < shortenings.size(); ++k)
+  for (std::size_t k = 0; k < times.size(); ++k)
     for (const std::string &group : groups)
-      entries.push_back({shortenings[k], group, numbered(group, k)});
+      entries.push_back({times[k], group, numbered(group, k)});
   coupling::write_pvd(directory + "/fields.pvd", entries);
 }
 } // namespace antiform::cases

@@ -367,6 +367,7 @@ std::vector<Finding> check_parameters(const Parameters &p)
     check_join(p, findings);
   check_run(p, findings);
   check_event_driver(p, findings);
+  check_turning_walls(p, findings);
   check_materials(p, findings);
   if (p.has("layer"))
     check_solid_scene(p, findings);

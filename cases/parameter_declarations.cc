@@ -190,11 +190,21 @@ void declare(WallsParameters &walls, Declarations &entries)
   entries.choice(
       "Action", walls.action,
       "press: rigid frictionless platens shorten the section; pull: the grains "
-      "of its ends are gripped, do not turn, and are moved apart.",
-      "press|pull");
+      "of its ends are gripped, do not turn, and are moved apart; turn: the platens turn "
+      "about their centres, so that the lower side is pressed, and bend a layer of "
+      "grains that is not glued to them. What says strain or shortening of the loading is "
+      "h/L times their rotation then, the strain of the faces of a straight layer.",
+      "press|pull|turn");
   entries.number("Grip layers", walls.grip_layers,
                  "Width of each grip over the mean grain diameter (pull) [-].",
                  Number::at_least(1.));
+  entries.number("End rotation", walls.end_rotation,
+                 "Of each wall, at which the run ends at the latest (turn) [degrees].",
+                 Number::at_least(0.).up_to(30.));
+  entries.number("Shortening before turning", walls.shortening_before,
+                 "By which the walls press the section first, and keep their centres "
+                 "there as they turn (turn, at a constant rate) [-].",
+                 Number::at_least(0.).below(0.1));
   entries.leave();
 }
 

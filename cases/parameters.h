@@ -167,7 +167,7 @@ struct GravityParameters
   double acceleration = 9.81; ///< downward [m/s^2]
 };
 
-/// End walls: rigid, frictionless, over the full height; both move inward.
+/// End walls: rigid, frictionless, over the full height; both move inward, or turn.
 struct WallsParameters
 {
   std::string loading = "constant rate"; ///< constant rate | step and relax | event driver
@@ -176,11 +176,15 @@ struct WallsParameters
   double relaxation_tolerance = 1e-4;    ///< unbalanced ratio, step and relax [-]
   double transits_per_millistrain = 300.; ///< axial wave transits of the layer per 1e-3
   double ramp = 20.;            ///< transits over which the walls come up to speed
-  std::string action = "press"; ///< press | pull (by grips)
+  std::string action = "press"; ///< press | pull (by grips) | turn
   double grip_layers = 7.5;     ///< width of a grip over the mean grain diameter
+  double end_rotation = 0.;     ///< of each wall, turn; the run ends there [degrees]
+  double shortening_before = 0.; ///< of the section, before the walls turn [-]
 
   bool steps_and_relaxes() const { return loading == "step and relax"; }
   bool follows_events() const { return loading == "event driver"; }
+  bool pulls() const { return action == "pull"; }
+  bool turns() const { return action == "turn"; }
 };
 
 /// A pressure on the sides of a specimen, and on its ends before they shorten it.
@@ -338,6 +342,8 @@ struct Parameters
   const ConfinementParameters *confinement() const;
   /// From one state of balance to the next, not in time (coupling::EventDriver).
   bool follows_events() const { return has("walls") && walls.follows_events(); }
+  /// The ends of the layer are turned, not moved.
+  bool bends() const { return has("walls") && walls.turns(); }
   /// Nothing but a straight layer of grains: a specimen of the laboratory.
   bool is_specimen() const;
   /// The parts of the section that are finite elements alone.
@@ -374,6 +380,11 @@ struct Parameters
   // Derived geometry, in metres, from the ratios.
   double layer_length() const;   ///< L: wavelength (cosine) or length (straight) [m]
   double section_length() const; ///< straight ends included [m]
+  /// Strain that turning both ends by 1 rad puts on the faces of a straight layer as long
+  /// as the section, h/L: what counts as strain where walls turn [-].
+  double strain_per_radian() const { return layer.thickness / section_length(); }
+  /// That strain at 'Walls/End rotation' [-].
+  double end_bending() const;
   double grain_diameter() const; ///< mean [m]
   double matrix_modulus() const; ///< E0 [Pa]
   bool has_foundation_under(const std::string &face) const; ///< base or top

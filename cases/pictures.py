@@ -123,7 +123,7 @@ def cracks_of(run, frame):
     if run.cracks is None:
         return None
     table = run.cracks
-    past = np.asarray(table["shortening"], dtype=float) <= frame.time * (1. + 1e-12)
+    past = np.asarray(table[run.loading_column()], dtype=float) <= frame.time * (1. + 1e-12)
     return {"x": table["x_m"][past], "y": table["y_m"][past],
             "angle": np.radians(table["orientation_deg"][past]),
             "length": table["length_m"][past], "tension": table["mode"][past] == "tension"}
@@ -172,10 +172,12 @@ class Figure:
                     state = (f"mode {mode:.0f}, scaled to 1, at a mean stress of the layer of "
                              f"{stress / 1e6:.4g} MPa")
         else:
-            state = f"step ({frame.number}), shortening {100. * frame.time:.3g} %"
-            stress = run.stress_at(frame.number)
-            if stress is not None:
-                state += f", axial stress {stress / 1e6:.4g} MPa"
+            state = f"step ({frame.number}), "
+            state += (f"wall rotation {frame.time:.3g}°" if run.bends()
+                      else f"shortening {100. * frame.time:.3g} %")
+            response = run.response_at(frame.number)
+            if response is not None:
+                state += f", {response}"
         self.figure.text(LEFT / self.width, 1. - 0.54 / self.height, state, fontsize=11)
 
     def legend(self, handles):

@@ -79,7 +79,7 @@ double predict_strain_at_peak(const Parameters &p, const SectionGeometry &g)
                                     bed.young_modulus);
     thickest = std::max(thickest, p.bed_share(k) * g.thickness());
   }
-  if (p.walls.action == "pull")
+  if (p.walls.pulls())
     return parting;
   if (g.amplitude() == 0.)
     return crushing;
@@ -99,6 +99,8 @@ namespace
 /// At which a run ends, roughly [-].
 double predict_shortening(const Parameters &p, const SectionGeometry &g)
 {
+  if (p.bends())
+    return p.end_bending() + p.walls.shortening_before;
   if (p.run.end_shortening > 0.)
     return p.run.end_shortening;
   const double peak = predict_strain_at_peak(p, g);

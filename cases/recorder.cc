@@ -1,5 +1,6 @@
 #include "cases/recorder.h"
 
+#include "cases/bending_record.h"
 #include "cases/field_output.h"
 #include "cases/fracture_record.h"
 #include "cases/scene_events.h"
@@ -42,6 +43,8 @@ constexpr double settled = 2e-4;
 // The stress has fallen for good when it has stayed down over so many axial transits and
 // samples.
 constexpr double fallen_transits = 2., fallen_samples = 3.;
+// Rotations of walls are sums of their steps.
+constexpr double round_off = 1. - 1e-9;
 } // namespace
 
 Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
@@ -57,13 +60,13 @@ Recorder::Recorder(Scene &scene, std::string directory, const bool resumed)
   if (p.is_bridged()) // its ledger is that of steps in which the mesh acts
     sample_interval_ += (p.bridging.sub_cycles - sample_interval_ % p.bridging.sub_cycles) %
                         p.bridging.sub_cycles;
-  if (scene.parameters.is_specimen())
+  if (p.is_specimen() && !p.bends())
     specimen_.emplace(scene);
   if (!resumed && writes_tables())
   {
     history_.emplace(directory_ + "/history.csv", columns());
     if (scene.grains)
-      crack_table_.emplace(directory_ + "/cracks.csv");
+      crack_table_.emplace(directory_ + "/cracks.csv", crack_columns());
   }
 }
 
@@ -73,9 +76,17 @@ std::vector<std::string> Recorder::columns() const
   if (specimen_)
     names.insert(names.end(), SpecimenRecord::columns().begin(),
                  SpecimenRecord::columns().end());
+  if (scene_.parameters.bends())
+    names.insert(names.end(), bending_columns().begin(), bending_columns().end());
   if (scene_.events != nullptr)
     names.insert(names.end(), {"largest_unbalanced_ratio", "unbalanced_over_strength"});
   return names;
+}
+
+const std::vector<std::string> &Recorder::crack_columns() const
+{
+  static const std::vector<std::string> none, rotation{bending_columns().front()};
+  return scene_.parameters.bends() ? rotation : none;
 }
 
 bool Recorder::writes_tables() const
@@ -112,10 +123,14 @@ Recorder::Sample Recorder::measure() const
     sample.wall_force = -scene_.tension();
     sample.axial_stress = sample.wall_force / g.thickness();
   }
-  sample.strain = scene_.loading_sign() * sample.shortening;
-  sample.stress = scene_.loading_sign() * sample.axial_stress;
+  sample.strain = scene_.strain();
+  sample.stress = scene_.parameters.bends()
+                      ? bending_stress(scene_)
+                      : scene_.loading_sign() * sample.axial_stress;
   if (specimen_)
     sample.gauges = specimen_->measure(scene_);
+  if (scene_.parameters.bends())
+    sample.gauges = measure_bending(scene_);
   sample.fold = fold_.measure();
   return sample;
 }
@@ -218,11 +233,15 @@ void Recorder::append_cracks()
     const discrete::Crack &crack = state.cracks[state.cracks_recorded];
     if (state.cracks_recorded == 0)
     {
-      first_crack_strain_ = scene_.shortening();
+      first_crack_strain_ =
+          scene_.parameters.bends() ? scene_.strain() : scene_.shortening();
       first_crack_stress_ = stress_.empty() ? 0. : stress_.back();
     }
     ++(crack.mode == discrete::Bond::broken_in_tension ? n_tensile_ : n_shear_);
-    crack_table_->append(crack, scene_.shortening());
+    crack_table_->append(crack, scene_.shortening(),
+                         scene_.parameters.bends()
+                             ? std::vector<double>{scene_.field_time()}
+                             : std::vector<double>{});
   }
 }
 
@@ -235,12 +254,15 @@ bool Recorder::has_passed_peak() const
 void Recorder::look_for_end(const Sample &sample)
 {
   const RunParameters &run = scene_.parameters.run;
+  const bool bends = scene_.parameters.bends();
   if (run.end_shortening > 0.)
   {
     if (sample.strain >= run.end_shortening)
       why_finished_ = "the shortening asked for";
     return;
   }
+  if (bends && sample.strain >= round_off * scene_.parameters.end_bending())
+    why_finished_ = "the rotation asked for";
   const double transit = 1e-3 / scene_.parameters.walls.transits_per_millistrain;
   const double between =
       scene_.load_steps != nullptr
@@ -252,7 +274,10 @@ void Recorder::look_for_end(const Sample &sample)
                             : std::max(fallen_transits * transit, fallen_samples * between);
   if (sample.stress < run.stress_ratio_of_peak * peak_stress_ &&
       sample.strain - last_high_strain_ >= fallen)
-    why_finished_ = "the wanted share of the peak stress";
+    why_finished_ = std::string("the wanted share of the peak ") +
+                    (bends ? "moment" : "stress");
+  if (bends)
+    return;
   const bool peaked = peak_strain_ > 0. && sample.strain - peak_strain_ >= settled;
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";
@@ -269,6 +294,8 @@ double Recorder::share_done() const
   const RunParameters &run = scene_.parameters.run;
   if (run.end_shortening > 0.)
     return last_.strain / run.end_shortening;
+  if (scene_.parameters.bends())
+    return last_.strain / scene_.parameters.end_bending();
   if (peak_strain_ > 0. && last_.strain - peak_strain_ >= 0.25 * settled)
     return std::min(1., last_.strain / (run.strain_multiple_of_peak * peak_strain_));
   return last_.strain / run.longest_shortening;
@@ -276,12 +303,11 @@ double Recorder::share_done() const
 
 void Recorder::write_fields()
 {
-  const double shortening = scene_.shortening();
-  field_shortening_.push_back(shortening);
+  field_shortening_.push_back(scene_.field_time());
   write_field_files(scene_, directory_, field_shortening_);
 }
 
-double Recorder::section_stiffness() const
+double Recorder::elastic_slope(const std::vector<double> &values) const
 {
   // Least squares through the elastic part: up to half of the first crack's or the peak's
   // strain.
@@ -294,14 +320,13 @@ double Recorder::section_stiffness() const
     if (strain_[k] < 0.2 * limit)
       continue; // the walls are coming up to speed
     xx += strain_[k] * strain_[k];
-    xy += strain_[k] * total_[k];
+    xy += strain_[k] * values[k];
     x += strain_[k];
-    y += total_[k];
+    y += values[k];
     n += 1.;
   }
-  const double height = scene_.geometry.surface() - scene_.geometry.base();
   const double spread = n * xx - x * x;
-  return n >= 2. && spread > 0. ? (n * xy - x * y) / spread / height : 0.;
+  return n >= 2. && spread > 0. ? (n * xy - x * y) / spread : 0.;
 }
 
 double Recorder::crack_initiation_stress() const
@@ -316,19 +341,34 @@ double Recorder::crack_initiation_stress() const
   return begin == cracks_.end() ? 0. : stress_[begin - cracks_.begin()];
 }
 
+void Recorder::fill_loading(std::map<std::string, Result> &results) const
+{
+  if (scene_.parameters.bends())
+    return report_bending(scene_,
+                          {peak_strain_, peak_stress_, first_crack_strain_,
+                           first_crack_stress_, crack_initiation_stress(),
+                           elastic_slope(stress_)},
+                          results);
+  const double height = scene_.geometry.surface() - scene_.geometry.base();
+  results[scene_.pulls() ? "tensile_strength" : "peak_stress"] = {peak_stress_, "Pa"};
+  results["strain_at_peak"] = {peak_strain_, "-"};
+  results["section_stiffness"] = {elastic_slope(total_) / height, "Pa"};
+  results["matrix_share_at_peak"] = {peak_share_, "-"};
+  if (!scene_.grains || scene_.grains->state.cracks.empty())
+    return;
+  results["first_crack_stress"] = {first_crack_stress_, "Pa"};
+  results["crack_initiation_stress"] = {crack_initiation_stress(), "Pa"};
+}
+
 void Recorder::fill(Summary &summary) const
 {
   const SectionGeometry &g = scene_.geometry;
   auto &results = summary.results;
   results["shortening"] = {last_.shortening, "-"};
-  results[scene_.pulls() ? "tensile_strength" : "peak_stress"] = {peak_stress_,
-                                                                           "Pa"};
-  results["strain_at_peak"] = {peak_strain_, "-"};
+  fill_loading(results);
   results["unbalanced_ratio"] = {ratio_, "-"};
   if (specimen_)
     specimen_->fill(scene_, peak_stress_, summary);
-  results["section_stiffness"] = {section_stiffness(), "Pa"};
-  results["matrix_share_at_peak"] = {peak_share_, "-"};
   results["fold_amplitude"] = {last_.fold.fold_amplitude, "m"};
   results["limb_dip"] = {last_.fold.limb_dip, "deg"};
   results["surface_uplift"] = {last_.fold.surface_uplift, "m"};
@@ -347,8 +387,6 @@ void Recorder::fill(Summary &summary) const
     if (!cracks.empty())
     {
       const Vec2 place = cracks.front().reference_place;
-      results["first_crack_stress"] = {first_crack_stress_, "Pa"};
-      results["crack_initiation_stress"] = {crack_initiation_stress(), "Pa"};
       results["first_crack_x"] = {place.x, "m"};
       results["first_crack_above_axis"] = {place.y - g.axis(place.x), "m"};
       results["first_crack_is_tensile"] = {
@@ -453,7 +491,7 @@ void Recorder::visit_state(coupling::StateArchive &archive)
       coupling::Table::reopen(directory_ + "/history.csv", columns(), integers[2]));
   if (scene_.grains)
   {
-    crack_table_.emplace(directory_ + "/cracks.csv", integers[3]);
+    crack_table_.emplace(directory_ + "/cracks.csv", integers[3], crack_columns());
     scene_.grains->state.cracks_recorded =
         static_cast<std::size_t>(n_tensile_ + n_shear_);
   }

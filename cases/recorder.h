@@ -57,7 +57,7 @@ private:
     double shortening = 0., axial_stress = 0., wall_force = 0., matrix_share = 0.;
     FoldGauge::Reading fold;
     double strain = 0., stress = 0.; ///< in the direction of loading: they grow
-    std::vector<double> gauges;      ///< of a specimen
+    std::vector<double> gauges;      ///< of a specimen, or of walls that turn
   };
   Sample measure() const;
   bool writes_tables() const; ///< the first rank does
@@ -66,9 +66,12 @@ private:
   void append_cracks();
   void close_ledger(const coupling::Energies &energies);
   void look_for_end(const Sample &sample);
-  double section_stiffness() const;
+  /// Slope of @p values over the strain while the layer is elastic.
+  double elastic_slope(const std::vector<double> &values) const;
   double crack_initiation_stress() const;
   std::vector<std::string> columns() const;
+  const std::vector<std::string> &crack_columns() const;
+  void fill_loading(std::map<std::string, Result> &results) const;
 
   Scene &scene_;
   std::string directory_;

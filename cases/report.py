@@ -24,7 +24,9 @@ from report_page import Page, counted, with_prefix, with_unit, write
 from run_files import Run, RunError, read_deck
 
 # Results that a reader looks for first, in the field's words.
-FACTS = (("peak_stress", "peak axial stress"), ("tensile_strength", "tensile strength"),
+FACTS = (("peak_moment", "peak moment of the walls"), ("rotation_at_peak", "rotation at the peak"),
+         ("first_crack_rotation", "rotation at the first crack"),
+         ("peak_stress", "peak axial stress"), ("tensile_strength", "tensile strength"),
          ("strain_at_peak", "strain at the peak"), ("young_modulus", "Young's modulus"),
          ("poisson_ratio", "Poisson's ratio"), ("critical_stress", "critical stress"),
          ("theory_stress", "critical stress, theory"), ("dominant_wavelength", "wavelength"),
@@ -32,13 +34,14 @@ FACTS = (("peak_stress", "peak axial stress"), ("tensile_strength", "tensile str
          ("crack_initiation_stress", "crack initiation stress"),
          ("cracks_tensile", "cracks in tension"), ("cracks_shear", "cracks in shear"),
          ("fold_amplitude", "fold amplitude"), ("limb_dip", "limb dip"),
-         ("surface_uplift", "uplift of the surface"), ("shortening", "shortening at the end"))
+         ("surface_uplift", "uplift of the surface"), ("shortening", "shortening at the end"),
+         ("wall_rotation", "rotation of the walls at the end"))
 OF_LAYERS = {"fold_amplitude", "limb_dip", "surface_uplift"}  # specimens have them at no use
 SCENE = ("Components", "Layer/Representation", "Layer/Thickness", "Layer/Grains across",
          "Layer/Length ratio", "Layer/Slenderness ratio", "Layer/Shape",
          "Matrix/Representation", "Matrix/Stiffness contrast", "Matrix/Burial depth ratio",
          "Matrix/Base depth ratio", "Matrix/Interface", "Matrix/Join", "Run/Driver",
-         "Walls/Loading")
+         "Walls/Action", "Walls/Loading")
 MODES_DRAWN = 2
 UNITS = {"Layer/Thickness": " m"}
 NAMES = {"onset": "cracks have begun", "peak": "up to the peak", "first": "before shortening",
@@ -59,9 +62,9 @@ def steps_of(run, wanted):
     names = {}
     for which in wanted.split(","):
         if which == "onset":
-            if run.cracks is None or not len(run.cracks["shortening"]):
+            if run.cracks is None or not len(run.cracks["step"]):
                 continue
-            cracked = np.abs(run.times) >= np.abs(run.cracks["shortening"][0])
+            cracked = np.abs(run.times) >= np.abs(run.cracks[run.loading_column()][0])
             number = run.step_numbers[int(np.argmax(cracked)) if cracked.any() else -1]
         elif which == "peak" and (not run.history or "axial_stress_Pa" not in run.history):
             continue  # a run without a curve has none
@@ -161,7 +164,7 @@ def add_cracks(page, run, deck):
 def add_energies(page, run):
     energy = run.summary.get("energy", {})
     if run.history and "boundary_work_J" in run.history:
-        figures.energy_ledger(run.history, page.path("energy.svg"))
+        figures.energy_ledger(run, page.path("energy.svg"))
     if not energy and not os.path.exists(page.path("energy.svg")):
         return
     page.add("<h2>Energy ledger</h2>")

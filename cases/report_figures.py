@@ -98,9 +98,10 @@ def crack_spacing(places, thickness, path):
     save(figure, path)
 
 
-def energy_ledger(history, path):
-    """Where the walls' work is, stacked over the shortening; the work itself as a line."""
-    x = 100. * abs(history["shortening"])
+def energy_ledger(run, path):
+    """Where the walls' work is, stacked over the loading; the work itself as a line."""
+    history = run.history
+    x = run.loading().drawn
     names = [entry for entry in ENERGIES if entry[0] in history and np.any(history[entry[0]])]
     if not names or "boundary_work_J" not in history or len(x) < 2:
         return
@@ -116,7 +117,7 @@ def energy_ledger(history, path):
     axes.plot(x, history["boundary_work_J"] / factor, color="black", linewidth=1.4,
               linestyle="--", label="work from outside")
     axes.set_xlim(x.min(), x.max())
-    axes.set_xlabel("extension (%)" if history["shortening"].min() < 0. else "shortening (%)")
+    axes.set_xlabel(run.loading().label)
     axes.set_ylabel(f"energy ({unit} per metre of depth)")
     axes.grid(color="#dddddd", linewidth=0.6)
     axes.legend(frameon=False, fontsize=9, loc="upper left")

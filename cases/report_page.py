@@ -42,6 +42,8 @@ def with_unit(name, value, unit):
     """A result in the unit that its size calls for, three or four digits."""
     if value is None:
         return "lost"
+    if unit == "N m":
+        return with_prefix(value, "N m per metre")
     if unit == "Pa":
         for factor, prefix in ((1e9, "GPa"), (1e6, "MPa"), (1e3, "kPa")):
             if abs(value) >= factor:

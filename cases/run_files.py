@@ -186,6 +186,19 @@ class Frame:
         self.continuum = grids.get("continuum")
 
 
+class Quantity:
+    """A column of history.csv, growing as the run is loaded, and how it is drawn."""
+
+    def __init__(self, values, factor, name, unit):
+        self.values, self.factor, self.name, self.unit = values, factor, name, unit
+        self.drawn = factor * values
+        self.label = f"{name} ({unit})"
+
+    def text(self, value):
+        """A value of it in words."""
+        return f"{self.name} {self.factor * value:.4g}{'°' if self.unit == '°' else ' ' + self.unit}"
+
+
 class Run:
     """A run's directory. Field files are read when a frame is asked for."""
 
@@ -259,24 +272,50 @@ class Run:
             if not self.history or "axial_stress_Pa" not in self.history:
                 raise RunError("--step peak needs history.csv with axial_stress_Pa.")
             # The last fields up to it: just after a peak little of it is left.
-            top = int(np.argmax(self.sign() * self.history["axial_stress_Pa"]))
+            top = int(np.argmax(self.response().values))
             return [[n for n, row in zip(steps, self.history_rows())
                      if row <= top or n == steps[0]][-1]]
         if not which.isdigit():
             raise RunError(f"--step {which}: give first, last, peak, all or a number.")
         return [int(which)]
 
+    def bends(self):
+        """Walls that turn load the section."""
+        return bool(self.history) and "wall_rotation_deg" in self.history
+
+    def loading_column(self):
+        """Of history.csv and cracks.csv, by which the times of fields.pvd go."""
+        return "wall_rotation_deg" if self.bends() else "shortening"
+
+    def loading(self):
+        """What the walls do, as a Quantity."""
+        values = self.history[self.loading_column()]
+        if self.bends():
+            return Quantity(values, 1., "wall rotation", "°")
+        # A specimen that is pulled: what grows is extension.
+        return Quantity(self.sign() * values, 100.,
+                        "extension" if self.sign() < 0. else "shortening", "%")
+
+    def response(self):
+        """What the section answers with, as a Quantity; None without such a column."""
+        for column, name, unit in (("wall_moment_Nm", "wall moment", "MN m per metre"),
+                                   ("axial_stress_Pa", "axial stress", "MPa"),
+                                   ("wall_force_N", "force of the walls", "MN/m")):
+            if column in self.history:
+                return Quantity(self.sign() * self.history[column], 1e-6, name, unit)
+        return None
+
     def sign(self):
         """1, or -1 of a specimen that is pulled: shortening and stress times it grow."""
         return -1. if self.history["shortening"].min() < 0. else 1.
 
-    def last_shortening(self):
-        return float((self.sign() * self.history["shortening"]).max())
+    def last_loading(self):
+        return float(self.loading().values.max())
 
     def history_rows(self):
-        """The line of history.csv of each time: the nearest in shortening, not before that of
+        """The line of history.csv of each time: the nearest in loading, not before that of
         the time before, since a section may turn back (snap-back)."""
-        x = self.history["shortening"]
+        x = self.history[self.loading_column()]
         row, rows = 0, []
         for time in self.times:
             distance = abs(x[row:] - time)
@@ -284,11 +323,12 @@ class Run:
             rows.append(row)
         return rows
 
-    def stress_at(self, number):
-        """Axial stress [Pa] at the step @p number; None without history lines."""
+    def response_at(self, number):
+        """Stress or moment at the step @p number, in words; None without history lines."""
         if not self.history or not {"axial_stress_Pa", "shortening"} <= set(self.history):
             return None
         if len(self.history["shortening"]) == 0:
             return None
         row = self.history_rows()[self.step_numbers.index(number)]
-        return float(self.history["axial_stress_Pa"][row])
+        response = self.response()
+        return response.text(float(self.sign() * response.values[row]))

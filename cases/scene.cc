@@ -156,9 +156,25 @@ MPI_Comm Scene::communicator() const
   return mesh ? mesh->communicator() : MPI_COMM_SELF;
 }
 
+double Scene::rotation() const
+{
+  return wall_motion->rotation();
+}
+
+double Scene::strain() const
+{
+  return parameters.bends() ? parameters.strain_per_radian() * rotation()
+                            : loading_sign() * shortening();
+}
+
+double Scene::field_time() const
+{
+  return parameters.bends() ? 180. / M_PI * rotation() : shortening();
+}
+
 double Scene::shortening() const
 {
-  if (events != nullptr)
+  if (events != nullptr && !parameters.bends())
     return loading_sign() * events->load();
   if (grips != nullptr)
     return -grips->extension() /
@@ -200,8 +216,11 @@ build_bodies(const Parameters &p, const MPI_Comm communicator, const Progress &p
     scene->grains.emplace(make_grains(p, scene->geometry, holds, progress));
     if (bridged && scene->grains->smooth)
       refuse_fractures_in_overlap(*scene->grains, weight);
-    if (p.has("walls") && p.walls.action == "press")
+    if (p.has("walls") && !p.walls.pulls())
       scene->walls = make_walls(*scene->grains, scene->geometry);
+    if (p.bends())
+      for (discrete::Wall &wall : scene->walls)
+        wall.turn.emplace();
     if (p.has("servo walls"))
       scene->side_walls = make_side_walls(*scene->grains, scene->geometry);
     if (p.layer.locked_in_stress > 0.)

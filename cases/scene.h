@@ -73,7 +73,15 @@ struct Scene
   /// 1 where the section is shortened, -1 where it is extended: what grows.
   double loading_sign() const { return pulls() ? -1. : 1.; }
   /// By grips.
-  bool pulls() const { return parameters.has("walls") && parameters.walls.action == "pull"; }
+  bool pulls() const { return parameters.has("walls") && parameters.walls.pulls(); }
+  /// Mean rotation of walls that turn, positive where the lower side is pressed [rad].
+  double rotation() const;
+  /// What counts as strain of the loading and grows: shortening, extension, or of walls
+  /// that turn h/L times their rotation [-].
+  double strain() const;
+  /// By which field files are told apart: the shortening [-], or the rotation of walls
+  /// that turn [degrees].
+  double field_time() const;
   /// Mean of the forces with which the grips pull [N].
   double tension() const;
   /// Mean unbalanced force over the mean force of a joint, of the last record [-].

@@ -260,12 +260,36 @@ void add_load_steps(Scene &scene)
       rank_load_steps, "load steps", reason_for(p, "load steps"));
 }
 
+/// Speeds of walls that turn, at a time since the start.
+struct TurningSpeeds
+{
+  std::function<double(double)> inward; ///< until the section is pressed [m/s]
+  std::function<double(double)> spin;   ///< from then on [rad/s]
+};
+
+TurningSpeeds turning_speeds(const Scene &scene)
+{
+  const Parameters &p = scene.parameters;
+  const double ramp = p.walls.ramp * scene.transit_time;
+  const double way = 0.5 * p.walls.shortening_before * scene.geometry.length();
+  const double pressed =
+      way > 0. ? p.walls.shortening_before / scene.shortening_rate + ramp : 0.;
+  const double full = scene.shortening_rate / p.strain_per_radian();
+  return {[way, pressed](const double t) {
+            return t < pressed
+                       ? way * 0.5 * M_PI / pressed * std::sin(M_PI * t / pressed)
+                       : 0.;
+          },
+          [full, ramp, pressed](const double t)
+          { return t < pressed ? 0. : full * ramp_up(t - pressed, ramp); }};
+}
+
 void add_walls(Scene &scene)
 {
   const Parameters &p = scene.parameters;
   scene.transit_time = layer_transit(scene);
   scene.shortening_rate = 1e-3 / (p.walls.transits_per_millistrain * scene.transit_time);
-  const bool pulls = p.walls.action == "pull";
+  const bool pulls = p.walls.pulls();
   const double length =
       scene.geometry.length() -
       (pulls ? 2. * p.walls.grip_layers * scene.geometry.diameter() : 0.);
@@ -283,10 +307,13 @@ void add_walls(Scene &scene)
         {Stage::forces, Stage::drift}, rank_base, "walls", reason);
     return;
   }
+  const TurningSpeeds turning =
+      p.bends() ? turning_speeds(scene) : TurningSpeeds{wall_speed, {}};
   scene.wall_motion = &scene.simulation->add(
       std::make_unique<Walls>(scene.walls, grains, scene.mesh ? &*scene.mesh : nullptr,
-                              scene.bridging.get(), wall_speed),
+                              scene.bridging.get(), turning.inward),
       {Stage::forces, Stage::react, Stage::drift}, rank_walls, "walls", reason);
+  scene.wall_motion->turn(turning.spin);
   if (p.walls.steps_and_relaxes())
     add_load_steps(scene);
   if (const ConfinementParameters *const confinement = p.confinement())

@@ -123,7 +123,7 @@ void check_buckling_of_grains(const Parameters &p, Findings &findings)
     find({"Layer/Locked-in stress", "Run/Driver"},
          "looks for a multiple of one load, the shortening, beside which no other stress "
          "can be. Give 0.");
-  if (p.walls.action == "pull" || p.confinement() != nullptr)
+  if (p.walls.action != "press" || p.confinement() != nullptr)
     find({"Walls/Action", "Components", "Run/Driver"},
          "knows one load, the shortening by the walls. Give press, and remove servo walls "
          "and membrane from 'Components'.");

@@ -64,7 +64,7 @@ SpecimenRecord::SpecimenRecord(const Scene &scene)
   const double d = g.diameter(), L = g.length(), half = 0.5 * g.thickness();
   // Axial gauges away from platens and grips; lateral ones along the sides, over a
   // quarter of the length. Where so few grains are that one holds none, they are wider.
-  const bool pulls = scene.parameters.walls.action == "pull";
+  const bool pulls = scene.parameters.walls.pulls();
   const double at =
       pulls ? 0.3 * (L - 2. * scene.parameters.walls.grip_layers * d) : 0.2 * L;
   for (double wide = 1.; wide < 100. * L / d; wide *= 1.5)

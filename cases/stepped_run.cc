@@ -197,6 +197,11 @@ std::string SteppedRun::loading_in_words() const
          std::to_string(std::llround(s.transit_time / dt)) + " steps an axial transit, " +
          (s.load_steps != nullptr
               ? "walls that wait for balance after each load step"
+          : parameters_.bends()
+              ? std::to_string(
+                    std::llround(M_PI / 180. * parameters_.strain_per_radian() /
+                                 (s.shortening_rate * dt))) +
+                    " steps a degree of the walls"
               : std::to_string(std::llround(1e-3 / (s.shortening_rate * dt))) +
                     " steps per 1e-3 of shortening");
 }

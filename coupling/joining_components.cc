@@ -114,6 +114,17 @@ void LocalDamping::visit_state(StateArchive &archive)
   archive.owned_value("damping/mesh_energy", mesh_energy_);
 }
 
+namespace
+{
+/// Of @p wall on the grains in a time @p dt at its present speeds.
+void add_wall_work(Wall &wall, const double dt)
+{
+  wall.work += dt * wall.reaction * wall.velocity;
+  if (wall.turn)
+    wall.work += dt * wall.turn->moment * wall.turn->spin;
+}
+} // namespace
+
 Walls::Walls(std::vector<Wall> &walls,
              GrainState *grains,
              MeshState *mesh,
@@ -136,7 +147,7 @@ void Walls::run(const Stage stage, const Clock &clock)
       for (Wall &wall : walls_)
       {
         add_wall_forces(grains_->grains, wall);
-        wall.work += 0.5 * clock.dt * wall.reaction * wall.velocity;
+        add_wall_work(wall, 0.5 * clock.dt);
       }
     set_speeds(clock);
     break;
@@ -148,8 +159,10 @@ void Walls::run(const Stage stage, const Clock &clock)
     for (Wall &wall : walls_)
     {
       wall.displacement += clock.dt * wall.velocity;
+      if (wall.turn)
+        wall.turn->rotation += clock.dt * wall.turn->spin;
       if (grains_ != nullptr)
-        wall.work += 0.5 * clock.dt * wall.reaction * wall.velocity;
+        add_wall_work(wall, 0.5 * clock.dt);
     }
     if (mesh_ != nullptr)
       for (const PrescribedDof &entry : mesh_->prescribed)
@@ -171,8 +184,13 @@ void Walls::set_speeds(const Clock &clock)
     closure_before_ = way();
     return;
   }
+  const double time = clock.time + 0.5 * clock.dt - preload_.until;
   for (Wall &wall : walls_)
-    wall.velocity = speed_(clock.time + 0.5 * clock.dt - preload_.until);
+  {
+    wall.velocity = speed_(time);
+    if (wall.turn)
+      wall.turn->spin = pressing_sense(wall) * spin_(time);
+  }
 }
 
 void Walls::react(const Clock &clock)
@@ -215,6 +233,24 @@ double Walls::mesh_reaction(const bool of_layer) const
              walls_[entry.wall].normal.x;
   return dealii::Utilities::MPI::sum(sum, mesh_->communicator()) /
          static_cast<double>(walls_.size());
+}
+
+double Walls::rotation() const
+{
+  double sum = 0.;
+  for (const Wall &wall : walls_)
+    if (wall.turn)
+      sum += pressing_sense(wall) * wall.turn->rotation;
+  return sum / static_cast<double>(walls_.size());
+}
+
+double Walls::moment() const
+{
+  double sum = 0.;
+  for (const Wall &wall : walls_)
+    if (wall.turn)
+      sum += pressing_sense(wall) * wall.turn->moment;
+  return sum / static_cast<double>(walls_.size());
 }
 
 double Walls::closure() const

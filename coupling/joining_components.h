@@ -100,7 +100,7 @@ private:
 };
 
 /// Rigid frictionless walls at the ends of the section: contact of the grains, prescribed
-/// dofs of the mesh, motion, reactions and work.
+/// dofs of the mesh, motion, reactions and work. With grains alone they may turn.
 class Walls : public Component
 {
 public:
@@ -122,6 +122,13 @@ public:
   /// Shortening of the section so far, preloading left out: inward displacement of all
   /// walls [m].
   double closure() const;
+
+  /// Let the walls that can (discrete::Wall::turn) turn, in the sense that presses the
+  /// section's lower side. \param spin of each wall at a time [rad/s]
+  void turn(std::function<double(double)> spin) { spin_ = std::move(spin); }
+  /// Means over walls that turn, positive where the lower side is pressed [rad], [N m].
+  double rotation() const;
+  double moment() const;
 
   /// Until a time the walls follow a speed that depends on their reactions (a pressure is
   /// put on); only then shortening begins.
@@ -145,7 +152,7 @@ private:
   GrainState *grains_;
   MeshState *mesh_;
   const BridgingDomain *domain_;
-  std::function<double(double)> speed_;
+  std::function<double(double)> speed_, spin_;
   Preload preload_;
   std::int64_t averaged_ = 1; ///< steps
   double closure_before_ = 0.; ///< way of the walls when shortening begins [m]

@@ -78,6 +78,11 @@ void visit_walls(StateArchive &archive,
     archive.value(name + "/displacement", walls[w].displacement);
     archive.value(name + "/velocity", walls[w].velocity);
     archive.value(name + "/work", walls[w].work);
+    if (walls[w].turn)
+    {
+      archive.value(name + "/rotation", walls[w].turn->rotation);
+      archive.value(name + "/spin", walls[w].turn->spin);
+    }
     visit_late_contacts(archive, name, walls[w]);
   }
 }

@@ -1,19 +1,34 @@
 #include "discrete/walls.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace antiform::discrete
 {
 namespace
 {
+/// Along the normal so far, where @p grain has its place on @p wall [m].
+double way_at(const Wall &wall, const Grains &grains, const std::int32_t grain)
+{
+  return wall.turn ? wall.displacement - wall_lever(wall, grains, grain) *
+                                             std::sin(wall.turn->rotation)
+                   : wall.displacement;
+}
+
 double gap_to(const Wall &wall, const Grains &grains, const std::int32_t i)
 {
   // Differences of displacements, so that nothing moves exactly when nothing has moved.
   const Vec2 displacement{grains.displacement_x[i], grains.displacement_y[i]};
   return dot(grains.reference(i) - wall.point, wall.normal) - grains.radius[i] +
-         (dot(displacement, wall.normal) - wall.displacement);
+         (dot(displacement, wall.normal) - way_at(wall, grains, i));
 }
 } // namespace
+
+double wall_lever(const Wall &wall, const Grains &grains, const std::int32_t grain)
+{
+  const Vec2 left{-wall.normal.y, wall.normal.x};
+  return dot(grains.reference(grain) - wall.point, left);
+}
 
 double wall_gap(const Wall &wall, const WallContact &contact, const Grains &grains)
 {
@@ -22,7 +37,8 @@ double wall_gap(const Wall &wall, const WallContact &contact, const Grains &grai
   const double installed =
       dot(grains.reference(contact.grain) - wall.point, wall.normal) -
       grains.radius[contact.grain] - contact.reference_gap;
-  return installed + (dot(displacement, wall.normal) - wall.displacement) +
+  return installed +
+         (dot(displacement, wall.normal) - way_at(wall, grains, contact.grain)) +
          contact.initial_gap;
 }
 
@@ -83,6 +99,7 @@ void find_wall_contacts(const Grains &grains,
 void add_wall_forces(Grains &grains, Wall &wall)
 {
   wall.reaction = wall.pressing_stiffness = 0.;
+  double turning = 0.; // sum of force times lever
   for (const WallContact &contact : wall.contacts)
   {
     const double gap = wall_gap(wall, contact, grains);
@@ -93,7 +110,11 @@ void add_wall_forces(Grains &grains, Wall &wall)
     grains.force_y[contact.grain] += push * wall.normal.y;
     wall.reaction += push;
     wall.pressing_stiffness += contact.weight * contact.stiffness;
+    if (wall.turn)
+      turning += push * wall_lever(wall, grains, contact.grain);
   }
+  if (wall.turn)
+    wall.turn->moment = -turning * std::cos(wall.turn->rotation);
 }
 
 double region_reaction(const Grains &grains, const Wall &wall, const int region)

@@ -3,6 +3,7 @@
 #include "discrete/grains.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace antiform::discrete
@@ -19,13 +20,26 @@ struct WallContact
   bool late = false;         ///< found in the course of the run
 };
 
-/// Rigid frictionless wall: a straight line that moves along its normal.
+/// Of a wall that turns about its point, counter-clockwise positive.
+struct WallTurn
+{
+  double rotation = 0.; ///< so far [rad]
+  double spin = 0.;     ///< half-step [rad/s]
+  /// On the grains about the point, of the last evaluation, weighted [N m].
+  double moment = 0.;
+};
+
+/// Rigid frictionless wall: a straight line that moves along its normal. Where it turns
+/// too, each grain keeps its place on it and is pushed along the normal of the unturned
+/// wall: as by a wall that is just rough enough not to squeeze the grains out along it
+/// (docs/theory/loading.md).
 struct Wall
 {
   Vec2 point;                        ///< of the wall in the reference section [m]
   Vec2 normal;                       ///< unit, into the grains
   double displacement = 0.;          ///< along the normal so far [m]
   double velocity = 0.;              ///< along the normal, half-step [m/s]
+  std::optional<WallTurn> turn;      ///< empty: it does not turn
   std::vector<WallContact> contacts; ///< in the order of grains
 
   double reaction = 0.;           ///< pressing force of the last evaluation, weighted [N]
@@ -52,7 +66,7 @@ void find_wall_contacts(const Grains &grains,
 /// Insert a contact in the order of grains.
 void insert_contact(Wall &wall, const WallContact &contact);
 
-/// Add the wall's forces to the grains; sets reaction.
+/// Add the wall's forces to the grains; sets reaction, and the moment where it turns.
 void add_wall_forces(Grains &grains, Wall &wall);
 
 /// Part of the wall's present pressing force that grains of @p region take [N].
@@ -60,6 +74,17 @@ double region_reaction(const Grains &grains, const Wall &wall, int region);
 
 /// Force with which @p wall presses the grain of @p contact, along its normal [N].
 double wall_force(const Wall &wall, const WallContact &contact, const Grains &grains);
+
+/// Place of @p grain on @p wall: its reference distance from the wall's point along the
+/// wall, positive on the left of the normal [m].
+double wall_lever(const Wall &wall, const Grains &grains, std::int32_t grain);
+
+/// 1 for a wall whose normal has x > 0, else -1: counter-clockwise turns times it press
+/// the lower side of a section between two walls.
+inline double pressing_sense(const Wall &wall)
+{
+  return wall.normal.x > 0. ? 1. : -1.;
+}
 
 /// Elastic gap of @p contact, negative where it presses [m].
 double wall_gap(const Wall &wall, const WallContact &contact, const Grains &grains);

@@ -180,17 +180,31 @@ std::vector<std::string> CrackTable::columns()
           "layer",         "joint",         "element"};
 }
 
-CrackTable::CrackTable(const std::string &path)
-    : table_(path, columns())
+namespace
+{
+std::vector<std::string> with(std::vector<std::string> names,
+                              const std::vector<std::string> &further)
+{
+  names.insert(names.end(), further.begin(), further.end());
+  return names;
+}
+} // namespace
+
+CrackTable::CrackTable(const std::string &path, const std::vector<std::string> &further)
+    : table_(path, with(columns(), further))
 {
 }
 
-CrackTable::CrackTable(const std::string &path, const std::int64_t offset)
-    : table_(Table::reopen(path, columns(), offset))
+CrackTable::CrackTable(const std::string &path,
+                       const std::int64_t offset,
+                       const std::vector<std::string> &further)
+    : table_(Table::reopen(path, with(columns(), further), offset))
 {
 }
 
-void CrackTable::append(const discrete::Crack &crack, const double shortening)
+void CrackTable::append(const discrete::Crack &crack,
+                        const double shortening,
+                        const std::vector<double> &further)
 {
   using discrete::Bond;
   if (crack.mode != Bond::broken_in_tension && crack.mode != Bond::broken_in_shear)
@@ -199,13 +213,17 @@ void CrackTable::append(const discrete::Crack &crack, const double shortening)
                            " is listed as a crack, but its "
                            "bond is not broken.");
   const double degrees = 180. / M_PI;
-  table_.append({std::to_string(crack.step), shortest_text(crack.time),
-                 shortest_text(shortening), shortest_text(crack.place.x),
-                 shortest_text(crack.place.y), shortest_text(crack.reference_place.x),
-                 shortest_text(crack.reference_place.y),
-                 shortest_text(crack.orientation * degrees), shortest_text(crack.length),
-                 crack.mode == Bond::broken_in_tension ? "tension" : "shear",
-                 std::to_string(crack.layer), std::to_string(crack.joint),
-                 std::to_string(crack.element)});
+  std::vector<std::string> row{
+      std::to_string(crack.step), shortest_text(crack.time),
+      shortest_text(shortening), shortest_text(crack.place.x),
+      shortest_text(crack.place.y), shortest_text(crack.reference_place.x),
+      shortest_text(crack.reference_place.y),
+      shortest_text(crack.orientation * degrees), shortest_text(crack.length),
+      crack.mode == Bond::broken_in_tension ? "tension" : "shear",
+      std::to_string(crack.layer), std::to_string(crack.joint),
+      std::to_string(crack.element)};
+  for (const double x : further)
+    row.push_back(shortest_text(x));
+  table_.append(row);
 }
 } // namespace antiform::coupling

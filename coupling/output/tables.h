@@ -64,12 +64,20 @@ class CrackTable
 {
 public:
   static std::vector<std::string> columns();
-  explicit CrackTable(const std::string &path);
-  CrackTable(const std::string &path, std::int64_t offset); ///< as Table::reopen()
+  /// \param further columns behind the others, as of Table
+  explicit CrackTable(const std::string &path,
+                      const std::vector<std::string> &further = {});
+  /// As Table::reopen().
+  CrackTable(const std::string &path,
+             std::int64_t offset,
+             const std::vector<std::string> &further = {});
 
   /// \param shortening of the section when the crack formed [-]
+  /// \param further    values of the further columns
   /// The crack's mode must be a broken one (std::logic_error otherwise).
-  void append(const discrete::Crack &crack, double shortening);
+  void append(const discrete::Crack &crack,
+              double shortening,
+              const std::vector<double> &further = {});
   std::int64_t offset() { return table_.offset(); }
 
 private:

@@ -157,4 +157,105 @@ TEST(Walls, HoldGrainsThatComeToThemLater)
   EXPECT_NEAR(grains.force_x[1], 2e3 * 0.02, 1e-9);
   EXPECT_EQ(grains.force_x[2], 0.); // its overlap was there when the wall was made
 }
+
+namespace
+{
+/// Grains above each other at a wall along y that turns about the origin, at rest.
+struct ColumnAtTurningWall
+{
+  Grains grains;
+  Wall wall;
+  /// \param side of the wall on which the grains are, 1 or -1 along x
+  explicit ColumnAtTurningWall(const double side)
+  {
+    for (const double y : {-2., -1., 0., 1., 2.})
+      grains.add({0.5 * side, y}, 0.5, 1., 0);
+    wall.normal = {side, 0.};
+    wall.turn.emplace();
+    install_wall_contacts(grains, wall, 0.1, 0.1, {1e3});
+  }
+  void evaluate(const double rotation)
+  {
+    wall.turn->rotation = rotation;
+    grains.force_x.assign(grains.size(), 0.);
+    grains.force_y.assign(grains.size(), 0.);
+    add_wall_forces(grains, wall);
+  }
+  double energy(const double rotation)
+  {
+    wall.turn->rotation = rotation;
+    return wall_energy(grains, wall);
+  }
+};
+} // namespace
+
+TEST(TurningWall, PressesOneSideAndLeavesTheOther)
+{
+  ColumnAtTurningWall left(1.);
+  constexpr double rotation = 0.01, k = 2000.;
+  left.evaluate(rotation); // counter-clockwise: the upper end goes away
+  const double way = std::sin(rotation), expected[] = {2. * k * way, k * way, 0., 0., 0.};
+  for (std::size_t i = 0; i < left.grains.size(); ++i)
+  {
+    EXPECT_NEAR(left.grains.force_x[i], expected[i], 1e-10) << i; // of round-off
+    EXPECT_EQ(left.grains.force_y[i], 0.) << i;
+  }
+  EXPECT_NEAR(left.wall.reaction, 3. * k * way, 1e-10);
+  // Levers 2 and 1 below the point: the push turns the grains counter-clockwise too.
+  EXPECT_NEAR(left.wall.turn->moment, (4. + 1.) * k * way * std::cos(rotation), 1e-10);
+}
+
+TEST(TurningWall, PushesAsItsEnergyFalls)
+{
+  ColumnAtTurningWall left(1.);
+  left.wall.displacement = 0.005; // so that some contacts above press too
+  for (std::size_t i = 0; i < left.grains.size(); ++i)
+    left.grains.displacement_x[i] = 1e-3 * std::sin(1. + static_cast<double>(i));
+  for (const double rotation : {-0.02, 0.003, 0.2})
+  {
+    left.evaluate(rotation);
+    constexpr double step = 1e-6; // the energy is smooth to the second order
+    const double moment =
+        (left.energy(rotation + step) - left.energy(rotation - step)) / (2. * step);
+    EXPECT_NEAR(left.wall.turn->moment / moment, 1., 1e-6) << rotation;
+    left.evaluate(rotation);
+    for (std::size_t i = 0; i < left.grains.size(); ++i)
+    {
+      double &x = left.grains.displacement_x[i];
+      const double here = x, force = left.grains.force_x[i];
+      x = here + step;
+      const double ahead = wall_energy(left.grains, left.wall);
+      x = here - step;
+      const double behind = wall_energy(left.grains, left.wall);
+      x = here;
+      EXPECT_NEAR(force, -(ahead - behind) / (2. * step), 1e-6 * left.wall.reaction);
+    }
+  }
+}
+
+TEST(TurningWall, OfTheOtherSideIsItsMirrorImage)
+{
+  ColumnAtTurningWall left(1.), right(-1.);
+  left.evaluate(pressing_sense(left.wall) * 0.01);
+  right.evaluate(pressing_sense(right.wall) * 0.01);
+  EXPECT_EQ(right.wall.reaction, left.wall.reaction);
+  EXPECT_EQ(right.wall.turn->moment, -left.wall.turn->moment);
+  for (std::size_t i = 0; i < left.grains.size(); ++i)
+    EXPECT_EQ(right.grains.force_x[i], -left.grains.force_x[i]);
+}
+
+TEST(TurningWall, FindsGrainsWhereItHasTurnedTo)
+{
+  ColumnAtTurningWall left(1.);
+  const std::size_t held = left.wall.contacts.size();
+  left.grains.add({0.7, -3.}, 0.5, 1., 0); // 0.2 away, out of reach at first
+  left.grains.add({0.7, 3.}, 0.5, 1., 0);
+  for (auto *v : {&left.grains.displacement_x, &left.grains.displacement_y,
+                  &left.grains.force_x, &left.grains.force_y, &left.grains.torque})
+    v->assign(left.grains.size(), 0.);
+  left.wall.turn->rotation = 0.05; // 0.15 towards the lower one
+  find_wall_contacts(left.grains, left.wall, 0.1, {1e3});
+  ASSERT_EQ(left.wall.contacts.size(), held + 1);
+  EXPECT_EQ(left.wall.contacts.back().grain, 5);
+}
 } // namespace antiform::discrete::test::walls_tests
