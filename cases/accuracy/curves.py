@@ -19,6 +19,7 @@ import sys
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
@@ -34,7 +35,7 @@ FINER = {"grains-fine": ("grains", "Layer/Grains across = 30, 30, 30, 40, 40, 40
                              "Layer/Seed = seeds 1 to 10")}
 STUDIES = ("grains", "strength", "balance", "rate", "specimen-rate", "relaxation", "damping",
            "cells", "overlap", "joins", "elements", *FINER)
-MACHINE = "AMD EPYC, shared"
+MACHINE = "AMD EPYC (shared)"  # no commas in the record
 PEAK, CRITICAL = "peak_stress_Pa", "critical_stress_Pa"
 
 
@@ -72,10 +73,11 @@ class Knob:
         self.default, self.label = default, label or entry.split("/")[-1].lower()
         self.rows = []
 
-    def add(self, value, errors, lines, scatter=None):
-        """From coarse to fine. @p scatter: where it is not that of the errors."""
-        if scatter is None:
-            scatter = statistics.stdev(errors) if len(errors) > 1 else 0.
+    def add(self, value, errors, lines):
+        """From coarse to fine. A single packing scatters no less than those before it."""
+        scatter = statistics.stdev(errors) if len(errors) > 1 else 0.
+        if len(errors) == 1 and self.rows:
+            scatter = 0.01 * self.rows[-1]["scatter_percent"]
         self.rows.append({
             "knob": self.name, "entry": self.entry, "value": f"{value:g}",
             "error_percent": round(100. * statistics.mean(errors), 4),
@@ -86,9 +88,11 @@ class Knob:
             "truth": self.truth, "measured": f"{datetime.date.today()} {MACHINE}"})
 
     def by(self, column, lines, quantity, truth_of, coarse_to_fine):
-        """A row of each value of @p column; truth_of(line) is what it should be."""
+        """A row of each value of @p column; truth_of(line) is what it should be, None where
+        that is not known (a run at the finest tolerance may find no balance)."""
         for value in coarse_to_fine:
-            of = [line for line in lines if line[column] == value]
+            of = [line for line in lines
+                  if line[column] == value and truth_of(line) is not None]
             if of:
                 self.add(value, [line[quantity] / truth_of(line) - 1. for line in of], of)
         return self
@@ -114,7 +118,7 @@ def limit_of(lines, quantity, power):
 def paired(lines, quantity, *columns):
     """By seed (and other columns): the truth of the same packing."""
     of = {tuple(line[c] for c in columns): line[quantity] for line in lines}
-    return lambda line: of[tuple(line[c] for c in columns)]
+    return lambda line: of.get(tuple(line[c] for c in columns))
 
 
 def grains_knobs(studies):
@@ -136,12 +140,12 @@ def grains_knobs(studies):
     knobs.append(Knob("grains in strength", entry, "peak stress of a specimen",
                       f"the mean of {sizes[-1]:g} grains across", default,
                       "grains in strength").by(
-        "grains_across", strong, PEAK, lambda line: finest, sizes[:-1]))
+        "grains_across", strong, PEAK, lambda line: finest, sizes))
     return knobs
 
 
 def loading_knobs(studies):
-    events = "the event driver at a tolerance of 1e-4; same packings"
+    events = "the event driver at a tolerance of 1e-4 (same packings)"
     balance = studies["balance"]
     finest = [line for line in balance if line["balance_tolerance"] == 1e-4]
     truth = paired(finest, PEAK, "seed")
@@ -150,22 +154,23 @@ def loading_knobs(studies):
         Knob("loading rate of a layer", "Walls/Transits per millistrain", of, events,
              300., "loading rate of a bent layer").by(
             "transits_per_millistrain", studies["rate"] + studies["rate-slow"], PEAK, truth,
-            (50., 100., 200., 400., 800.)),
+            (50., 100., 200., 300., 400., 800.)),
         Knob("loading rate of a specimen", "Walls/Transits per millistrain",
-             "peak stress of a specimen", "the event driver; same packings", 300.,
+             "peak stress of a specimen", "the event driver (same packings)", 300.,
              "loading rate of a specimen").by(
             "transits_per_millistrain", studies["specimen-rate"], PEAK,
-            paired(studies["specimen-events"], PEAK, "seed"), (25., 50., 100., 200., 400.)),
+            paired(studies["specimen-events"], PEAK, "seed"),
+            (5., 10., 25., 50., 100., 200., 300., 400.)),
         Knob("balance tolerance", "Walls/Balance tolerance", of, events, 1e-3).by(
             "balance_tolerance", balance, PEAK, truth, (9e-3, 3e-3, 1e-3, 3e-4))]
     stepped = studies["relaxation"]
     knobs.append(Knob("load step", "Walls/Load step", of, events, 4e-5).by(
         "load_step", [l for l in stepped if l["relaxation_tolerance"] == 1e-4], PEAK, truth,
-        (1.6e-4, 8e-5, 4e-5, 2e-5)))
+        (1.6e-4, 8e-5, 4e-5)))
     knobs.append(Knob("relaxation tolerance", "Walls/Relaxation tolerance", of, events,
                       1e-4).by(
         "relaxation_tolerance", [l for l in stepped if l["load_step"] == 4e-5], PEAK, truth,
-        (1e-2, 1e-3, 1e-4, 1e-5)))
+        (1e-2, 1e-3, 1e-4)))
     damped = studies["damping"]
     knobs.append(Knob("damping", "Damping/Coefficient", of, events, 0.7,
                       "damping coefficient").by(
@@ -173,7 +178,7 @@ def loading_knobs(studies):
         (0.9, 0.7, 0.5, 0.3)))
     knobs.append(Knob("step safety", "Run/Step safety", of, events, 0.9).by(
         "step_safety", [l for l in damped if l["coefficient"] == 0.7], PEAK, truth,
-        (0.9, 0.6, 0.3)))
+        (0.9, 0.3)))
     return knobs
 
 
@@ -183,17 +188,20 @@ def join_knobs(studies):
     truth = paired(alone, CRITICAL, "seed", "stiffness_contrast")
     at_100 = paired([line for line in alone if line["stiffness_contrast"] == 100.],
                     CRITICAL, "seed")
-    of, words = "critical stress of a buried layer", "grains everywhere; same packings"
+    of, words = "critical stress of a buried layer", "grains everywhere (same packings)"
     overlap = studies["overlap"]
     knobs = [
-        Knob("cells beside grains", "Matrix/Cell size ratio", of, words, 2.).by(
+        Knob("cells beside grains", "Matrix/Cell size ratio", of, words, 2.,
+             "cells beside grains").by(
             "cell_size_ratio", studies["cells"], CRITICAL, at_100, (8., 4., 2., 1.)),
-        Knob("overlap", "Bridging domain/Overlap width ratio", of, words, 4.).by(
+        Knob("overlap", "Bridging domain/Overlap width ratio", of, words, 4.,
+             "overlap width").by(
             "overlap_width_ratio", [l for l in overlap if l["buffer_width_ratio"] == 4.],
-            CRITICAL, at_100, (2., 4., 8., 12.)),
-        Knob("buffer", "Bridging domain/Buffer width ratio", of, words, 4.).by(
+            CRITICAL, at_100, (2., 4., 8.)),
+        Knob("buffer", "Bridging domain/Buffer width ratio", of, words, 4.,
+             "buffer width").by(
             "buffer_width_ratio", [l for l in overlap if l["overlap_width_ratio"] == 8.],
-            CRITICAL, at_100, (1., 2., 4., 8.))]
+            CRITICAL, at_100, (1., 4., 8.))]
     for name, entry, is_it in (
             ("representation: continuum", "Layer/Representation",
              lambda l: l["layer_representation"] == "continuum"),
@@ -235,21 +243,36 @@ def where_not_monotone(knob):
 
 
 def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
-    x = [row["cpu_seconds"] for row in knob.rows]
-    y = [max(abs(row["error_percent"]), 1e-3) for row in knob.rows]
-    low = [max(a - row["scatter_percent"], 0.05 * a) for a, row in zip(y, knob.rows)]
-    high = [a + row["scatter_percent"] for a, row in zip(y, knob.rows)]
+    rows = [row for row in knob.rows if row["error_percent"] != 0.]  # not the truth itself
+    x = [row["cpu_seconds"] for row in rows]
+    y = [abs(row["error_percent"]) for row in rows]
+    low = [max(a - row["scatter_percent"], 0.4 * a) for a, row in zip(y, rows)]
+    high = [a + row["scatter_percent"] for a, row in zip(y, rows)]
     axes.errorbar(x, y, yerr=[[a - b for a, b in zip(y, low)],
                               [b - a for a, b in zip(y, high)]],
                   color=colour, marker=marker, markersize=5, markerfacecolor="white",
                   markeredgewidth=1.4, linewidth=1.2, elinewidth=0.8, capsize=2,
                   label=knob.label)
-    for a, b, row in zip(x, y, knob.rows):
-        axes.annotate(row["value"], (a, b), textcoords="offset points", xytext=(5, 4),
-                      fontsize=8, color=colour)
-        if row["default"] == "yes":
+    for a, b, row in zip(x, y, rows):
+        default = row["default"] == "yes"
+        axes.annotate(row["value"], (a, b), textcoords="offset points",
+                      xytext=(-17, -14) if default else (5, 4), fontsize=8, color=colour)
+        if default:
             axes.plot([a], [b], marker="o", markersize=13, markerfacecolor="none",
                       markeredgecolor="black", linestyle="none")
+
+
+def with_plain_ticks(axes, least_x=4., least_y=20.):
+    """At 1, 2, 5 of each power of ten, over no less than these factors."""
+    for axis, limits, least in ((axes.xaxis, axes.get_xlim(), least_x),
+                                (axes.yaxis, axes.get_ylim(), least_y)):
+        wider = max(1., math.sqrt(least * limits[0] / limits[1]))
+        limits = (limits[0] / wider, limits[1] * wider)
+        (axes.set_xlim if axis is axes.xaxis else axes.set_ylim)(*limits)
+        subs = (1., 2., 5.) if limits[1] < 60. * limits[0] else (1.,)
+        axis.set_major_locator(matplotlib.ticker.LogLocator(subs=subs))
+        axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda v, _: f"{v:g}"))
+        axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
 
 def draw(knobs, directory):
@@ -266,13 +289,14 @@ def draw(knobs, directory):
         place.set(xscale="log", yscale="log")
         place.grid(color="#dddddd", linewidth=0.6)
         place.margins(x=0.2, y=0.15)
+        with_plain_ticks(place)
         if len(of) == 1:
             place.set_title(of[0].label, fontsize=10, loc="left")
         else:
             place.set_title("finite elements, cell over h" if "cells" in of[0].name
                             else "representation, by contrast", fontsize=10, loc="left")
             place.legend([k.label.replace("representation: ", "") for k in of],
-                         frameon=False, fontsize=8)
+                         frameon=False, fontsize=8, loc="best")
         place.tick_params(labelsize=8)
     for place in axes.flat[len(panels):]:
         place.set_visible(False)
