@@ -140,6 +140,8 @@ Json to_json(const Parameters &p, const RunOptions &options)
                    {"dofs", std::llround(sizes.dofs)},
                    {"multipliers", std::llround(sizes.multipliers)}};
   json["prediction"] = to_json(prediction);
+  if (p.accuracy.percent > 0.)
+    json["accuracy"] = Json::parse(accuracy_json(p.accuracy));
   for (const Effect &effect : list_effects(p))
     json["effects"][effect.name] = {{"state", state_name(effect.state)},
                                     {"reason", effect.reason}};
@@ -264,6 +266,10 @@ int check(const Parameters &p,
     out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";
   else if (!p.is_specimen())
     print_mechanism(p, e, out);
+  if (p.accuracy.percent > 0.)
+    out << '\n';
+  for (const std::string &text : accuracy_in_words(p.accuracy))
+    out << text << '\n';
   out << "\nEffects\n";
   for (const Effect &effect : list_effects(p))
     line(out, "  %-21s %-12s %s", effect.name.c_str(), state_name(effect.state).c_str(),

@@ -171,6 +171,35 @@ std::unique_ptr<dealii::Patterns::PatternBase> NumberList::clone() const
   return std::make_unique<NumberList>(*this);
 }
 
+// --- Percentage --------------------------------------------------------------------
+
+bool Percentage::parse(const std::string &text, double &percent)
+{
+  percent = 0.;
+  const std::string trimmed = tidy(text);
+  if (trimmed.empty())
+    return true;
+  return trimmed.back() == '%' &&
+         parse_number(trimmed.substr(0, trimmed.size() - 1), percent) && percent > 0. &&
+         percent <= 100.;
+}
+
+bool Percentage::match(const std::string &text) const
+{
+  double percent = 0.;
+  return parse(text, percent);
+}
+
+std::string Percentage::description(OutputStyle) const
+{
+  return "a percentage > 0 % and <= 100 %, as 5 %, or nothing";
+}
+
+std::unique_ptr<dealii::Patterns::PatternBase> Percentage::clone() const
+{
+  return std::make_unique<Percentage>();
+}
+
 // --- Declarations ------------------------------------------------------------------
 
 void Declarations::enter(const std::string &section)
@@ -280,6 +309,15 @@ void Declarations::numbers(const std::string &name,
           });
 }
 
+void Declarations::percentage(const std::string &name,
+                              double &percent,
+                              const std::string &documentation)
+{
+  declare(name, percent > 0. ? exact_text(percent) + " %" : "", Percentage(),
+          documentation,
+          [&percent](const std::string &text) { Percentage::parse(text, percent); });
+}
+
 void Declarations::angle(const std::string &name,
                          double &tangent,
                          const std::string &documentation)
@@ -319,7 +357,8 @@ std::string range_in_words(const Declarations::Entry &entry)
   if (dynamic_cast<const dealii::Patterns::Bool *>(entry.pattern.get()) != nullptr)
     return "true or false";
   if (dynamic_cast<const Number *>(entry.pattern.get()) != nullptr ||
-      dynamic_cast<const NumberList *>(entry.pattern.get()) != nullptr)
+      dynamic_cast<const NumberList *>(entry.pattern.get()) != nullptr ||
+      dynamic_cast<const Percentage *>(entry.pattern.get()) != nullptr)
     return entry.pattern->description();
   if (dynamic_cast<const dealii::Patterns::Selection *>(entry.pattern.get()) == nullptr)
     return "a text";

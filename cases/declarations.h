@@ -49,6 +49,17 @@ private:
   Number range_;
 };
 
+/// A number > 0 and <= 100 with a percent sign, "5 %"; or nothing.
+class Percentage final : public dealii::Patterns::PatternBase
+{
+public:
+  bool match(const std::string &text) const override;
+  std::string description(OutputStyle style = Machine) const override;
+  std::unique_ptr<PatternBase> clone() const override;
+  /// \param[out] percent 0 for nothing
+  static bool parse(const std::string &text, double &percent);
+};
+
 /// The number that @p text is, all of it; false when it is none, or not finite.
 bool parse_number(const std::string &text, double &number);
 
@@ -105,6 +116,9 @@ public:
                std::vector<double> &value,
                const std::string &documentation,
                const Number &range);
+  /// In the deck "5 %", or nothing for 0.
+  void
+  percentage(const std::string &name, double &percent, const std::string &documentation);
   /// In the deck an angle in degrees, in the struct its tangent.
   void angle(const std::string &name, double &tangent, const std::string &documentation);
 

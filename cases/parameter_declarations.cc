@@ -430,6 +430,11 @@ void declare_parameters(Parameters &p,
       "boundary, surface pressure, gravity, walls, servo walls, membrane, fractures, "
       "damping, measurement circles; "
       "calibration for 'antiform calibrate'. Only their sections are read.");
+  entries.percentage(
+      "Accuracy", p.accuracy.percent,
+      "Error wanted, as 5 %: grains across, cells, overlap, loading rate or tolerances "
+      "that the deck does not set are chosen from what has been measured "
+      "(docs/accuracy.md). Empty: nothing is chosen.");
   for (const std::string &section : sections)
   {
     if (section == "Layer")

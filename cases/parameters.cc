@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 namespace antiform::cases
@@ -81,6 +82,8 @@ public:
     for (const Declarations::Entry &entry : declarations.entries())
       if (const auto line = last_.find(entry.path); line != last_.end())
         read_value(entry, line->second, declarations);
+
+    choose_accuracy(p, declarations);
 
     find_data("Calibration/Laboratory data", p.calibration.data);
     find_data("Fractures/Table", p.fractures.table);
@@ -186,6 +189,27 @@ private:
       if (const auto set = last_.find(path); set != last_.end())
         if (known_.find(path)->pattern->match(set->second.value))
           *target = set->second.value;
+  }
+
+  /// Entries that the deck leaves to its 'Accuracy'.
+  void choose_accuracy(Parameters &p, Declarations &declarations)
+  {
+    if (p.accuracy.percent == 0. || !refused_.empty())
+      return;
+    std::set<std::string> given;
+    for (const auto &[path, line] : last_)
+      given.insert(path);
+    std::string problem;
+    p.accuracy = plan_accuracy(p, given, problem);
+    if (!problem.empty())
+      report({{"Accuracy"}, problem});
+    else
+      for (const AccuracySetting &setting : p.accuracy.settings)
+        if (setting.is_chosen)
+        {
+          declarations.set(setting.entry, setting.value);
+          chosen_[setting.entry] = setting.value;
+        }
   }
 
   void add_component(const std::string &name,
@@ -357,6 +381,8 @@ private:
       what = parse_number(line.value, number) ? "is out of range" : "is not a number";
     if (dynamic_cast<const NumberList *>(entry.pattern.get()) != nullptr)
       what = "is no such list";
+    if (dynamic_cast<const Percentage *>(entry.pattern.get()) != nullptr)
+      what = "is no such percentage";
     const auto words = planned.find(entry.path);
     if (words != planned.end() && std::find(words->second.begin(), words->second.end(),
                                             line.value) != words->second.end())
@@ -389,9 +415,12 @@ private:
         return; // said already; what follows from a refused value is not the user's error
     const std::string &path = finding.entries.front();
     const auto line = last_.find(path);
-    const std::string value = line != last_.end()
-                                  ? line->second.value + "'"
-                                  : known_.find(path)->default_value + "' (the default)";
+    const auto chosen = chosen_.find(path);
+    std::string value = known_.find(path)->default_value + "' (the default)";
+    if (chosen != chosen_.end())
+      value = chosen->second + "' (chosen by 'Accuracy')";
+    else if (line != last_.end())
+      value = line->second.value + "'";
     problems_.push_back((line != last_.end() ? line->second.place : file_) + ": '" +
                         path + "' = '" + value + ": " + finding.text);
   }
@@ -401,6 +430,7 @@ private:
   std::vector<std::string> problems_;
   std::vector<std::string> refused_; ///< paths whose value was not taken
   std::map<std::string, DeckLine> last_;
+  std::map<std::string, std::string> chosen_; ///< values by 'Accuracy'
   dealii::ParameterHandler known_prm_;
   Declarations known_{known_prm_};
 };

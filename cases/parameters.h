@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cases/accuracy.h"
 #include "cases/study_plan.h"
 #include "discrete/bond_laws.h"
 #include "discrete/fractures.h"
@@ -299,6 +300,7 @@ struct CalibrationParameters
 struct Parameters
 {
   std::string title;
+  AccuracyPlan accuracy; ///< the deck's percentage, and what the reader has made of it
   std::vector<std::string> components;
   LayerParameters layer;
   BedsParameters beds;

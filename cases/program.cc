@@ -74,6 +74,8 @@ int run(const Parameters &parameters,
   log.line("antiform " ANTIFORM_VERSION ": " + parameters.title);
   if (!parameters.matrix.why_join.empty())
     log.line("join of layer and matrix: " + join_in_words(parameters));
+  for (const std::string &line : accuracy_in_words(parameters.accuracy))
+    log.line(line);
 
   if (parameters.run.driver == "static")
     return run_static(parameters, options, log, communicator);

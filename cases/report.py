@@ -19,6 +19,7 @@ import pictures  # picks the way to draw without a screen, and says what is miss
 import matplotlib.pyplot as plt
 import numpy as np
 import report_figures as figures
+from accuracy_page import add_accuracy
 from curves_page import curves
 from report_page import Page, counted, with_prefix, with_unit, write
 from run_files import Run, RunError, read_deck
@@ -233,6 +234,8 @@ def report(run, path, wanted):
           plt.rc_context({"svg.hashsalt": "antiform"})):
         page = Page(scratch)
         add_head(page, run, deck)
+        add_accuracy(page, run.summary.get("accuracy"),
+                     run.summary.get("cpu_seconds", 0.))
         add_modes(page, run)
         add_curves(page, run)
         add_sections(page, run, wanted)

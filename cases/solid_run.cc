@@ -55,6 +55,7 @@ Summary summary_of_run(const Parameters &p,
 {
   Summary summary;
   summary.title = p.title;
+  summary.accuracy = p.accuracy;
   summary.version = ANTIFORM_VERSION;
   summary.wall_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -365,6 +365,7 @@ void SteppedRun::finish(const std::string &status)
 {
   Summary summary;
   summary.title = parameters_.title;
+  summary.accuracy = parameters_.accuracy;
   summary.version = ANTIFORM_VERSION;
   summary.status = status;
   summary.wall_seconds = past_.wall_seconds + seconds_since(begin_);

@@ -23,6 +23,7 @@ except ImportError as missing:
              f"and use the python3 that has them (this one is {sys.executable}).")
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from accuracy_page import add_accuracy  # noqa: E402
 from report_page import Page, write  # noqa: E402
 
 COLOURS = ["#1f4fa8", "#c0392b", "#2e8b57", "#762a83", "#b35806", "#1b1b1b"]
@@ -173,6 +174,17 @@ def add_table(page, study):
     page.table(head, rows, classes=[member["status"] for member in record["members"]])
 
 
+def accuracy_of(study, directory):
+    """What the first member that has ended says of it, and its seconds; no wish of any."""
+    for member in study.members:
+        path = os.path.join(directory, "members", member["name"], "summary.json")
+        if os.path.exists(path):
+            with open(path) as file:
+                summary = json.load(file)
+            return summary.get("accuracy"), summary["cpu_seconds"]
+    return None, 0.
+
+
 def write_page(study, picture, path):
     record = study.record
     n_done = sum(m["status"] == "completed" for m in study.members)
@@ -190,6 +202,7 @@ def write_page(study, picture, path):
         page.vectors(picture, "Points are runs, or means over seeds; lines closed forms where "
                      "there are any.")
     add_table(page, study)
+    add_accuracy(page, *accuracy_of(study, os.path.dirname(path)))
     write(page, path)
     print(path)
 

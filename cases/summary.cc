@@ -84,6 +84,8 @@ void write_summary(const std::string &path, const Summary &summary)
         {"reason", effect.reason},
         {"calls", effect.calls},
         {"seconds", finite("effects/" + name + "/seconds", effect.seconds)}};
+  if (summary.accuracy.percent > 0.)
+    json["accuracy"] = Json::parse(accuracy_json(summary.accuracy));
   // A title may come in any encoding; JSON is UTF-8.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   coupling::replace_file(path, text + '\n');

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cases/accuracy.h"
+
 #include <mpi.h>
 
 #include <cstdint>
@@ -43,6 +45,7 @@ struct Summary
   std::map<std::string, Result> results;
   std::map<std::string, double> energy; ///< [J]
   std::map<std::string, EffectSummary> effects;
+  AccuracyPlan accuracy; ///< where the deck asks for one
 };
 
 /// What the processes of all ranks have used so far.

@@ -1,0 +1,104 @@
+// What has been measured of error and time: cases/accuracy/record.csv.
+#include "cases/accuracy.h"
+
+#include "cases/declarations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace antiform::cases
+{
+extern const char *const accuracy_record_text; ///< the file, written by the build
+
+namespace
+{
+using Line = std::map<std::string, std::string>; ///< column -> cell
+
+std::vector<std::string> cells_of(const std::string &line)
+{
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');)
+    cells.push_back(cell);
+  return cells;
+}
+
+std::vector<Line> read_record()
+{
+  std::vector<Line> lines;
+  std::istringstream stream(accuracy_record_text);
+  std::string text;
+  std::getline(stream, text);
+  const std::vector<std::string> names = cells_of(text);
+  while (std::getline(stream, text))
+  {
+    const std::vector<std::string> cells = cells_of(text);
+    if (cells.empty())
+      continue;
+    if (cells.size() != names.size())
+      throw std::logic_error(
+          "cases/accuracy/record.csv: not as many cells as names in '" + text + "'");
+    Line line;
+    for (std::size_t k = 0; k < names.size(); ++k)
+      line[names[k]] = cells[k];
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+const std::vector<Line> &record()
+{
+  static const std::vector<Line> lines = read_record();
+  return lines;
+}
+
+double number(const Line &line, const std::string &column)
+{
+  double value = 0.;
+  if (!parse_number(line.at(column), value))
+    throw std::logic_error("cases/accuracy/record.csv: '" + line.at(column) +
+                           "' is no number");
+  return value;
+}
+
+/// The mean is known as well as its scatter lets it be.
+double largest_error(const Line &line)
+{
+  return 0.01 * (std::abs(number(line, "error_percent")) +
+                 number(line, "scatter_percent") / std::sqrt(number(line, "packings")));
+}
+} // namespace
+
+AccuracyCurve accuracy_curve(const std::string &knob)
+{
+  AccuracyCurve curve;
+  for (const Line &line : record())
+    if (line.at("knob") == knob)
+    {
+      curve.entry = line.at("entry");
+      curve.of = line.at("of");
+      curve.truth = line.at("truth");
+      curve.rows.push_back(
+          {line.at("value"), largest_error(line), number(line, "cpu_seconds")});
+    }
+  if (curve.rows.empty())
+    throw std::logic_error("the record has no '" + knob + "'");
+  // A coarser row is not credited with an error that a finer one does not have.
+  for (std::size_t k = curve.rows.size() - 1; k > 0; --k)
+    curve.rows[k - 1].error = std::max(curve.rows[k - 1].error, curve.rows[k].error);
+  return curve;
+}
+
+std::optional<double> packing_scatter(const double grains_across)
+{
+  AccuracyCurve curve; // scatters in place of errors
+  for (const Line &line : record())
+    if (line.at("knob") == "grains in strength")
+      curve.rows.push_back(
+          {line.at("value"), 0.01 * number(line, "scatter_percent"), 0.});
+  return error_of(curve, exact_text(grains_across));
+}
+} // namespace antiform::cases
