@@ -136,6 +136,18 @@ void measure_in_diameters(const Parameters &p, AccuracyCurve &curve)
   }
 }
 
+/// Runs to a peak take grains times steps, which rise as n^2 and n; the record of grains
+/// is of solves.
+void price_in_steps(AccuracyCurve &curve)
+{
+  for (AccuracyCurve::Row &row : curve.rows)
+  {
+    double across = 0.;
+    parse_number(row.value, across);
+    row.seconds = across * across * across;
+  }
+}
+
 /// Rows that the deck's other entries have no room for are not offered.
 void leave_out_what_does_not_fit(const Parameters &p,
                                  const std::string &knob,
@@ -254,6 +266,8 @@ AccuracyPlan plan_accuracy(const Parameters &p,
     AccuracyCurve curve = accuracy_curve(knob);
     if (p.has_layer_mesh())
       measure_in_diameters(p, curve);
+    if (curve.entry == "Layer/Grains across" && p.run.steps_in_time())
+      price_in_steps(curve);
     AccuracySetting setting{curve.entry, value_of(p, curve.entry), false, {}, curve.of,
                             curve.truth};
     setting.error = error_of(curve, setting.value);

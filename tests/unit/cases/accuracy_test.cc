@@ -226,6 +226,26 @@ TEST(Accuracy, IsAPercentageOrNothing)
   }
 }
 
+// Grains times steps: twice the grains across take eight times as long. Of a specimen
+// that is pulled grains across are all that the record has.
+TEST(Accuracy, PricesGrainsOfARunInSteps)
+{
+  const Scratch scratch;
+  const Parameters p =
+      read_deck(scratch.write("specimen.prm", specimen),
+                {"Accuracy=10 %", "Walls/Action=pull", "Layer/Length ratio=6"});
+  ASSERT_EQ(p.accuracy.settings.size(), 1u);
+  int n_priced = 0;
+  for (const AccuracyAlternative &other : p.accuracy.alternatives)
+    if (!other.values.empty())
+    {
+      const double ratio = std::stod(other.values[0].second) / p.layer.grains_across;
+      EXPECT_NEAR(other.relative_seconds, std::pow(ratio, 3), 1e-12);
+      ++n_priced;
+    }
+  EXPECT_GE(n_priced, 3); // 20, 10 and 5 %
+}
+
 // Nothing breaks by the linear theory, and bare finite elements have no grains.
 TEST(Accuracy, ChoosesOnlyWhatTheSceneHas)
 {
