@@ -233,6 +233,8 @@ def element_knobs(studies):
 
 def where_not_monotone(knob):
     """Neighbours of which the dearer one is further off, beyond their standard errors."""
+    if knob.name.startswith("representation"):
+        return  # its values are scenes
     for coarse, fine in zip(knob.rows, knob.rows[1:]):
         known = math.hypot(*(row["scatter_percent"] / math.sqrt(row["packings"])
                              for row in (coarse, fine)))
@@ -240,6 +242,20 @@ def where_not_monotone(knob):
         if rise > 2. * known:
             yield (f"{knob.name}: {coarse['value']} to {fine['value']}: error "
                    f"{coarse['error_percent']:+.2f} to {fine['error_percent']:+.2f} %")
+
+
+# Where labels stand that others would cover, in points from their marks.
+PLACES = {("damping", "0.5"): (-22, -3), ("damping", "0.3"): (-22, -3),
+          ("balance tolerance", "0.0003"): (-24, 8),
+          ("representation: continuum", "100"): (-24, -6),
+          ("representation: continuum", "20"): (-20, -4),
+          ("representation: surface interface", "100"): (6, -4),
+          ("representation: bridging domain", "10000"): (-38, -4),
+          ("representation: bridging domain", "100"): (4, -12),
+          ("grains in bending", "10"): (6, 1), ("grains in stiffness", "10"): (6, 1),
+          ("loading rate of a specimen", "25"): (-14, -11),
+          ("buffer", "1"): (6, -4), ("load step", "8e-05"): (-32, -4),
+          ("bilinear cells", "0.1"): (-6, -14), ("bilinear cells", "0.05"): (-10, -14)}
 
 
 def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
@@ -255,8 +271,9 @@ def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
                   label=knob.label)
     for a, b, row in zip(x, y, rows):
         default = row["default"] == "yes"
-        axes.annotate(row["value"], (a, b), textcoords="offset points",
-                      xytext=(-17, -14) if default else (5, 4), fontsize=8, color=colour)
+        place = PLACES.get((knob.name, row["value"]), (-17, -14) if default else (5, 4))
+        axes.annotate(row["value"], (a, b), textcoords="offset points", xytext=place,
+                      fontsize=8, color=colour)
         if default:
             axes.plot([a], [b], marker="o", markersize=13, markerfacecolor="none",
                       markeredgecolor="black", linestyle="none")
@@ -304,11 +321,13 @@ def draw(knobs, directory):
         row[0].set_ylabel("error [%]", fontsize=9)
     for place in axes[-1]:
         place.set_xlabel("processor time of a run [s]", fontsize=9)
-    figure.suptitle("What accuracy costs", x=0.06, ha="left", fontsize=13, weight="bold")
-    figure.text(0.06, 1. - 0.46 / figure.get_figheight(), "Error of the mean of several "
+    inch = 1. / figure.get_figheight()
+    figure.suptitle("What accuracy costs", x=0.06, ha="left", fontsize=13, weight="bold",
+                    y=1. - 0.2 * inch)
+    figure.text(0.06, 1. - 0.5 * inch, "Error of the mean of several "
                 "packings; bars: standard deviation of one. The ring marks the default.",
                 fontsize=10, va="top")
-    figure.tight_layout(rect=(0., 0., 1., 1. - 0.55 / figure.get_figheight()))
+    figure.tight_layout(rect=(0., 0., 1., 1. - 0.6 * inch))
     save(figure, directory, "accuracy")
 
 
