@@ -80,7 +80,7 @@ class Knob:
             scatter = 0.01 * self.rows[-1]["scatter_percent"]
         self.rows.append({
             "knob": self.name, "entry": self.entry, "value": f"{value:g}",
-            "error_percent": round(100. * statistics.mean(errors), 4),
+            "error_percent": round(100. * statistics.mean(errors), 4) + 0.,  # no -0
             "scatter_percent": round(100. * scatter, 4), "packings": len(errors),
             "cpu_seconds": round(statistics.median(l["cpu_seconds"] for l in lines), 3),
             "grains": round(statistics.mean(l.get("sizes_grains", 0.) for l in lines)),
