@@ -1,0 +1,239 @@
+#!/usr/bin/python3
+"""Do the thesis' statements on layer-parallel shortening (its section 5.2.2) come out?
+
+    antiform study cases/shortening/claims-single.prm -o claims-single
+    antiform study cases/shortening/claims-multilayer.prm -o claims-multilayer
+    /usr/bin/python3 cases/shortening/claims.py claims-single claims-multilayer
+
+Takes directories of studies (or of runs), tells each run's model from its deck, and writes
+claims.md (a line a statement, a column a packing) into the first of them. Thresholds were
+fixed before any of these runs was made.
+
+Measures. "Cracks" are broken joint elements. 95 % of the peak: the first sample at which the
+axial stress reaches it. Distance to a wall: along x in the section before shortening.
+Opening of an interface: normal separation of the grain pairs that face each other across it,
+mean of what is positive, at the run's last fields. Two lines: continuous, with the kink where
+they fit best; the error is the root mean square.
+"""
+import argparse
+import os
+import sys
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.dirname(HERE))
+from run_files import Run, RunError, read_deck  # noqa: E402
+
+WEAK, LOWER, UPPER = 2, 0, 3  # regions of three beds, docs/output.md
+ENOUGH = 4  # of five packings
+
+
+class Model:
+    """A run: which of the thesis' models it is, and its tables."""
+
+    def __init__(self, directory):
+        self.run = Run(directory)
+        deck = read_deck(os.path.join(directory, "deck.prm"))
+        self.seed = int(deck["Layer/Seed"])
+        self.is_stack = "beds" in deck["Components"]
+        self.has_ends = float(deck["Layer/Straight end ratio"]) > 0.
+        self.interface = deck.get("Beds/Interface", "")
+        beds = 3 if self.is_stack else 1
+        self.thickness = float(deck["Layer/Thickness"]) / beds  # of one bed
+        self.strain = self.run.history["shortening"]
+        self.stress = self.run.history["axial_stress_Pa"]
+        self.top = int(np.argmax(self.stress))
+        self.near_peak = int(np.argmax(self.stress >= 0.95 * self.stress[self.top]))
+        self.status = self.run.summary.get("status", "not ended")
+
+    @property
+    def name(self):
+        if self.is_stack:
+            return f"multilayer, {self.interface}"
+        return "extended domain" if self.has_ends else "affected domain"
+
+    def cracks_until(self, row):
+        history = self.run.history
+        return int(history["cracks_tensile"][row] + history["cracks_shear"][row])
+
+    def n_cracks(self):
+        return self.cracks_until(-1)
+
+    def walls(self):
+        points = self.run.frame(self.run.step_numbers[0]).grains.points
+        return points[:, 0].min(), points[:, 0].max()
+
+    def secant_over_initial(self):
+        """Secant stiffness at 95 % of the peak over that of the first fifth of the stress."""
+        first = self.stress <= 0.2 * self.stress[self.top]
+        first[self.top:] = False
+        x, y = self.strain[first], self.stress[first]
+        initial = (x @ y) / (x @ x)
+        return self.stress[self.near_peak] / self.strain[self.near_peak] / initial
+
+
+def early_cracks(model):
+    """Share of the final cracks before 95 % of the peak."""
+    return model.cracks_until(model.near_peak) / model.n_cracks()
+
+
+def stress_drop(model):
+    return 1. - model.stress[model.top:].min() / model.stress[model.top]
+
+
+def tensile_near_walls(model):
+    """Share of the tensile cracks after the peak within one h of a wall."""
+    left, right = model.walls()
+    cracks = model.run.cracks
+    later = ((cracks["mode"] == "tension")
+             & (cracks["shortening"] > model.strain[model.top]))
+    x = cracks["reference_x_m"][later]
+    return float(np.mean(np.minimum(x - left, right - x) <= model.thickness))
+
+
+def weak_bed_first(model):
+    """The shortening of the weak bed's 50th crack over that of the first stiff bed's."""
+    when = {}
+    for bed in (LOWER, WEAK, UPPER):
+        of_bed = np.sort(model.run.cracks["shortening"][model.run.cracks["layer"] == bed])
+        when[bed] = of_bed[49] if len(of_bed) >= 50 else np.inf
+    return when[WEAK] / min(when[LOWER], when[UPPER])
+
+
+def two_lines_over_one(model):
+    """Error of the best continuous broken line after the peak over that of one line."""
+    x, y = model.strain[model.top:], model.stress[model.top:]
+
+    def error(columns):
+        fit = np.linalg.lstsq(columns, y, rcond=None)[0]
+        return np.sqrt(np.mean((columns @ fit - y) ** 2))
+
+    line = np.stack([np.ones_like(x), x - x[0]], axis=1)
+    kinks = np.linspace(x[0], x[-1], 202)[1:-1]
+    broken = min(error(np.column_stack([line, np.maximum(x - kink, 0.)])) for kink in kinks)
+    return broken / error(line)
+
+
+def pairs_across(grains, below, above):
+    """Grain pairs that face each other across the interface of two beds."""
+    region, radius = grains.field("region"), grains.field("radius_m")
+    lower, upper = np.flatnonzero(region == below), np.flatnonzero(region == above)
+    reach = 2. * radius.max() * 1.15
+    order = lower[np.argsort(grains.points[lower, 0])]
+    x = grains.points[order, 0]
+    first, second = [], []
+    for grain in upper:
+        a, b = np.searchsorted(x, grains.points[grain, 0] + np.array([-reach, reach]))
+        near = order[a:b]
+        distance = np.linalg.norm(grains.points[near] - grains.points[grain], axis=1)
+        met = near[distance <= 1.15 * (radius[near] + radius[grain])]
+        first += list(met)
+        second += [grain] * len(met)
+    return np.array(first), np.array(second)
+
+
+def opening(model, below, above):
+    """Mean opening of an interface at the last fields [m]."""
+    steps = model.run.step_numbers
+    start, end = model.run.frame(steps[0]).grains, model.run.frame(steps[-1]).grains
+    a, b = pairs_across(start, below, above)
+    before = np.linalg.norm(start.points[b] - start.points[a], axis=1)
+    after = np.linalg.norm(end.points[b] - end.points[a], axis=1)
+    return float(np.mean(np.maximum(after - before, 0.)))
+
+
+def upper_over_lower_opening(model):
+    return opening(model, WEAK, UPPER) / opening(model, LOWER, WEAK)
+
+
+CLAIMS = [  # statement, model, measure, limit, does a smaller value hold
+    ("(a) cracks before 95 % of the peak, of all", "affected domain", early_cracks, 0.10, True),
+    ("(a) stress drop after the peak", "affected domain", stress_drop, 0.30, False),
+    ("(a) tensile cracks after the peak within h of a wall", "affected domain",
+     tensile_near_walls, 0.50, False),
+    ("(c) the weak bed's 50th crack: shortening over the stiff beds'", "multilayer",
+     weak_bed_first, 1., True),
+    ("(c) error of two lines over one after the peak", "multilayer", two_lines_over_one,
+     0.50, True),
+    ("(c) opening of the upper over the lower interface", "multilayer",
+     upper_over_lower_opening, 1., False),
+]
+PAIRED = [  # the extended domain beside the affected one of the same packing
+    ("(b) cracks, extended over affected domain", lambda e, a: e.n_cracks() / a.n_cracks(),
+     1.1, False),
+    ("(b) secant over initial stiffness at 95 %, extended over affected",
+     lambda e, a: e.secant_over_initial() / a.secant_over_initial(), 1., True),
+]
+
+
+def directories(root):
+    members = os.path.join(root, "members")
+    if not os.path.isdir(members):
+        return [root]
+    return sorted(os.path.join(members, name) for name in os.listdir(members)
+                  if os.path.exists(os.path.join(members, name, "summary.json")))
+
+
+def line(statement, name, limit, smaller, values):
+    """A row of the table: a column a packing, and in how many it holds."""
+    holds = [v <= limit if smaller else v >= limit for v in values]
+    needed = ENOUGH * len(values) / 5.
+    verdict = "holds" if sum(holds) >= needed else "**does not hold**"
+    return (f"| {statement} | {name} | {'<=' if smaller else '>='} {limit:g} | "
+            + ", ".join(f"{v:.3g}" for v in values)
+            + f" | {sum(holds)} of {len(values)} | {verdict} |")
+
+
+def table(models):
+    rows = ["| statement | model | wanted | packings | holds in | |",
+            "| --- | --- | --- | --- | --- | --- |"]
+    names = sorted({m.name for m in models})
+    for statement, of, measure, limit, smaller in CLAIMS:
+        for name in names:
+            if name.startswith(of):
+                values = [measure(m) for m in models if m.name == name]
+                rows.append(line(statement, name, limit, smaller, values))
+    affected = {m.seed: m for m in models if m.name == "affected domain"}
+    pairs = [(m, affected[m.seed]) for m in models
+             if m.name == "extended domain" and m.seed in affected]
+    for statement, measure, limit, smaller in PAIRED if pairs else []:
+        rows.append(line(statement, "both domains", limit, smaller,
+                         [measure(*pair) for pair in pairs]))
+    return "\n".join(sorted(rows[2:])), "\n".join(rows[:2])
+
+
+def runs(models):
+    rows = ["| model | packing | peak (MPa) | at | cracks | closed to | status | CPU s |",
+            "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for m in models:
+        summary = m.run.summary
+        rows.append(
+            f"| {m.name} | {m.seed} | {1e-6 * m.stress[m.top]:.2f} | "
+            f"{m.strain[m.top]:.3e} | {m.n_cracks()} | "
+            f"{summary['energy']['closure_error']:.1e} | {m.status} | "
+            f"{summary['cpu_seconds']:.0f} |")
+    return "\n".join(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("directories", nargs="+")
+    arguments = parser.parse_args()
+    try:
+        models = [Model(d) for root in arguments.directories for d in directories(root)]
+        if not models:
+            sys.exit("claims.py: no finished run in the directories given.")
+        models.sort(key=lambda m: (m.name, m.seed))
+        body, head = table(models)
+        text = f"{head}\n{body}\n\n{runs(models)}\n"
+    except (RunError, OSError, KeyError) as error:
+        sys.exit(f"claims.py: {error}")
+    with open(os.path.join(arguments.directories[0], "claims.md"), "w",
+              encoding="utf-8") as out:
+        out.write(text)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
