@@ -69,11 +69,33 @@ def beds(frame):
             for number in np.unique(region[layer])]
 
 
+def body_range(values, gap):
+    """Ends of the run of values around their median in which no two neighbours are farther
+    apart than @p gap: without fragments that have flown off."""
+    values = np.sort(values)
+    wide = np.flatnonzero(np.diff(values) > gap)
+    middle = len(values) // 2
+    first = wide[wide < middle].max() + 1 if (wide < middle).any() else 0
+    last = wide[wide >= middle].min() if (wide >= middle).any() else len(values) - 1
+    return values[first], values[last]
+
+
+def left_the_section(frame):
+    """Which grains are fragments that have flown off, by gaps of four mean diameters."""
+    points, gap = frame.grains.points, 8. * np.mean(frame.grains.field("radius_m"))
+    away = np.zeros(len(points), dtype=bool)
+    for values in points.T:
+        low, high = body_range(values[~away], gap)
+        away |= (values < low) | (values > high)
+    return away
+
+
 def whole_box(frame):
     corners = []
     if frame.grains is not None and len(frame.grains.points):
-        r = frame.grains.field("radius_m")[:, None]
-        corners += [frame.grains.points - r, frame.grains.points + r]
+        stay = ~left_the_section(frame)
+        points, r = frame.grains.points[stay], frame.grains.field("radius_m")[stay, None]
+        corners += [points - r, points + r]
     if frame.continuum is not None:
         corners.append(frame.continuum.deformed_quads().reshape(-1, 2))
     if not corners:
@@ -108,8 +130,9 @@ def zoom_box(frame, whole, cracks):
         centre = points[np.argmax(points[:, 1]), 0]
     centre = np.clip(centre, whole.x0 + 2. * h, whole.x1 - 2. * h)
     near = points[abs(points[:, 0] - centre) < 2. * h, 1]
-    middle = (near.min() + near.max()) / 2.
-    height = min(max(1.3 * np.ptp(near), 1.7 * h), 2.3 * h)
+    low, high = body_range(near, np.mean(frame.grains.field("radius_m")))
+    middle = (low + high) / 2.
+    height = min(max(1.35 * (high - low), 1.7 * h), 2.3 * h)
     return Box(centre - 2. * h, centre + 2. * h, middle - height / 2., middle + height / 2.)
 
 
@@ -178,6 +201,9 @@ class Figure:
             response = run.response_at(frame.number)
             if response is not None:
                 state += f", {response}"
+        away = 0 if frame.grains is None else np.count_nonzero(left_the_section(frame))
+        if away:
+            state += f"; {away} {'grain has' if away == 1 else 'grains have'} flown off"
         self.figure.text(LEFT / self.width, 1. - 0.54 / self.height, state, fontsize=11)
 
     def legend(self, handles):
