@@ -38,7 +38,8 @@ STRETCH = 4.  # of the maps' heights
 
 
 def members_of(directory):
-    """A dictionary a finished member: its values, figures, join and scene."""
+    """A dictionary a member: its values, figures, join and scene. One that the mesh has
+    stopped in its collapse counts: what it tells of the peak holds."""
     path = os.path.join(directory, "study.json")
     if not os.path.exists(path):
         sys.exit(f"fracture_curves.py: there is no '{path}'. Make it with 'antiform study "
@@ -50,6 +51,7 @@ def members_of(directory):
         if member["status"] != "completed":
             print(f"{member['name']}: {member['status']} {member.get('reason', '')}",
                   file=sys.stderr)
+        if member["status"] not in ("completed", "failed") or not member["figures"]:
             continue
         folder = os.path.join(directory, "members", member["name"])
         deck = read_deck(os.path.join(folder, "deck.prm"))
