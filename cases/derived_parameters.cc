@@ -124,10 +124,14 @@ const ConfinementParameters *Parameters::confinement() const
   return has("membrane") ? &membrane : nullptr;
 }
 
+bool Parameters::is_bare_grains() const
+{
+  return has("layer") && !has("matrix") && layer.representation == "grains";
+}
+
 bool Parameters::is_specimen() const
 {
-  return has("layer") && !has("matrix") && layer.representation == "grains" &&
-         layer.shape == "straight";
+  return is_bare_grains() && layer.shape == "straight";
 }
 
 MaterialParameters::MaterialParameters()

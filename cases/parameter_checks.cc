@@ -86,13 +86,19 @@ void check_specimen(const Parameters &p, Findings &findings)
   const bool pulls = p.has("walls") && p.walls.action == "pull";
   if (p.has("membrane") && p.is_bare_mesh())
     return check_membrane_of_mesh(p, findings);
-  if (p.confinement() != nullptr && (!p.is_specimen() || !p.has("walls")))
+  if (p.has("servo walls") && (!p.is_specimen() || !p.has("walls")))
     findings.push_back({{"Components"},
-                        "servo walls and membrane confine a specimen between walls, " +
-                            specimen + ", and walls."});
+                        "servo walls confine a specimen between walls, " + specimen +
+                            ", and walls; around a bent layer give membrane in their "
+                            "place."});
+  if (p.has("membrane") && (!p.is_bare_grains() || !p.has("walls")))
+    findings.push_back({{"Components"},
+                        "a membrane confines a layer between walls, straight or bent, of "
+                        "grains and without matrix. Give walls, and no matrix; beside a "
+                        "matrix, a surface pressure."});
   if (p.has("servo walls") && p.has("membrane"))
     findings.push_back({{"Components"},
-                        "servo walls and membrane both confine the specimen. Give one of "
+                        "servo walls and membrane both confine the layer. Give one of "
                         "them."});
   if (p.confinement() != nullptr && p.confinement()->pressure > 0.02 * p.young_modulus())
     findings.push_back({{p.has("membrane") ? "Membrane/Pressure" : "Servo walls/Pressure",

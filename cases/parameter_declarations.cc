@@ -214,8 +214,7 @@ void declare_pressure(ConfinementParameters &confinement,
 {
   entries.number("Pressure", confinement.pressure,
                  "Confinement that " + what +
-                     " on the sides of a specimen; it comes up on all four sides before "
-                     "shortening begins [Pa].",
+                     "; it comes up on all four sides before shortening begins [Pa].",
                  Number::above(0.));
 }
 
@@ -234,7 +233,7 @@ void declare_control(ConfinementParameters &confinement, Declarations &entries)
 void declare(ServoWallsParameters &servo, Declarations &entries)
 {
   entries.enter("Servo walls");
-  declare_pressure(servo, "rigid frictionless walls keep", entries);
+  declare_pressure(servo, "rigid frictionless walls keep on the sides of a specimen", entries);
   declare_control(servo, entries);
   entries.leave();
 }
@@ -243,7 +242,7 @@ void declare(ServoWallsParameters &servo, Declarations &entries)
 void declare(MembraneParameters &membrane, const bool bare, Declarations &entries)
 {
   entries.enter("Membrane");
-  declare_pressure(membrane, "a flexible membrane puts", entries);
+  declare_pressure(membrane, "a flexible membrane puts on the faces of a layer, straight or bent", entries);
   if (bare)
   {
     entries.leave();

@@ -346,7 +346,9 @@ struct Parameters
   bool follows_events() const { return has("walls") && walls.follows_events(); }
   /// The ends of the layer are turned, not moved.
   bool bends() const { return has("walls") && walls.turns(); }
-  /// Nothing but a straight layer of grains: a specimen of the laboratory.
+  /// A layer of grains without a matrix.
+  bool is_bare_grains() const;
+  /// The same and straight: a specimen of the laboratory.
   bool is_specimen() const;
   /// The parts of the section that are finite elements alone.
   bool has_layer_mesh() const

@@ -369,6 +369,8 @@ void Recorder::fill(Summary &summary) const
   results["unbalanced_ratio"] = {ratio_, "-"};
   if (specimen_)
     specimen_->fill(scene_, peak_stress_, summary);
+  else if (const ConfinementParameters *const around = scene_.parameters.confinement())
+    results["confining_pressure"] = {around->pressure, "Pa"};
   results["fold_amplitude"] = {last_.fold.fold_amplitude, "m"};
   results["limb_dip"] = {last_.fold.limb_dip, "deg"};
   results["surface_uplift"] = {last_.fold.surface_uplift, "m"};

@@ -2,7 +2,7 @@
 """Confinement of layers of grains: peaks and cracks under 0 to 50 MPa, three ways.
 
     /usr/bin/python3 cases/confinement/grains.py --rigid DIR --stout DIR --matrix DIR
-        [--membrane DIR] [--slender DIR] [-o DIR]
+        [--membrane DIR] [-o DIR]
 
 Takes the directories of the studies here of those names; writes confinement_grains.svg/.png
 and the table confinement_grains.md. Lines of theory: the rock's own strength, UCS + N p by
@@ -28,12 +28,11 @@ from study_runs import save  # noqa: E402
 
 MODULUS = 56e9      # E of rock 1, plane stress as disks have it [Pa]
 ECCENTRICITY = 0.25  # of a wave of h/2 about its mean, over h
-LENGTHS = {"membrane": 12., "slender": 30.}  # L/h of bent layers in a membrane
+LENGTHS = {"membrane": 12.}  # L/h of bent layers in a membrane
 WAYS = {"rigid": ("straight, rigid walls", "#7f7f7f", "s"),
         "stout": ("straight, membrane", "#c0392b", "o"),
         "matrix": ("bent, L/h = 12, matrix", "#2e8b57", "D"),
-        "membrane": ("bent, L/h = 12, membrane", "#1f4fa8", "^"),
-        "slender": ("bent, L/h = 30, membrane", "#762a83", "v")}
+        "membrane": ("bent, L/h = 12, membrane", "#1f4fa8", "^")}
 
 
 def euler(length_ratio):
@@ -71,9 +70,7 @@ def draw(curves, line, directory):
     p = np.linspace(0., 52., 120)
     left.plot(p, np.polyval(line, p), color="#c0392b", linewidth=1.3)
     for way, length in LENGTHS.items():
-        if way == "membrane" or way in curves:
-            left.plot(p, bent_strength(p, line, length), color=WAYS[way][1],
-                      linewidth=1.3)
+        left.plot(p, bent_strength(p, line, length), color=WAYS[way][1], linewidth=1.3)
     for way, of in curves.items():
         text, colour, marker = WAYS[way]
         style = dict(color=colour, marker=marker, markersize=7, markerfacecolor="white",

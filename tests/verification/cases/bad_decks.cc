@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"'Layer/Breakable' = 'true'", "Give strengths"}},
         Refusal{"ServoWallsOnABuriedLayer",
                 {"set Components = layer, matrix, walls, servo walls, damping\n"},
-                {"bad.prm:2: ", "'Components'", "servo walls and membrane confine a specimen"}},
+                {"bad.prm:2: ", "'Components'", "servo walls confine a specimen"}},
         Refusal{"GripsWithoutRoomBetween",
                 {"set Components = layer, walls, damping\n",
                  indented("Walls", "set Action = pull"),
