@@ -14,12 +14,22 @@ void declare_network(FracturesParameters &fractures, Declarations &entries)
           "P21 of each set of a drawn network, length of traces per area, a list; empty: "
           "none is drawn [1/m].",
           Number::above(0.));
+  numbers("Spacing ratio", fractures.spacing_ratio,
+          "Spacing over h of each set of parallel fractures that go all the way through, "
+          "at even distances (P21 is 1/spacing), a list; empty: none, and not beside a "
+          "drawn network [-].",
+          Number::above(0.));
+  numbers("Phase", fractures.phase,
+          "Distance over the spacing from the origin, on the axis beside the fold below "
+          "the crest, to a trace of such a set, one number or one for each set [-].",
+          Number::between(0., 1.));
   numbers("Orientation", fractures.orientation,
-          "Mean direction of the traces, from x, one number or one for each set "
-          "[degrees].",
+          "Direction of the traces, from x, in a drawn network its mean, one number or "
+          "one for each set [degrees].",
           Number::between(-180., 180.));
   numbers("Orientation deviation", fractures.orientation_deviation,
-          "Standard deviation of it [degrees].", Number::between(0., 90.));
+          "Standard deviation of it in a drawn network [degrees].",
+          Number::between(0., 90.));
   entries.choice("Length law", fractures.length_law,
                  "Distribution of the lengths, of all sets.",
                  "constant|exponential|lognormal|power law");
@@ -36,7 +46,7 @@ void declare_network(FracturesParameters &fractures, Declarations &entries)
           "Largest length, 0 for no bound; a power law needs it [m].",
           Number::at_least(0.));
   entries.choice("Region", fractures.region,
-                 "Where the network lies: in the layer, or in the whole section.",
+                 "Where the sets lie: in the layer, or in the whole section.",
                  "layer|section");
   entries.whole("Seed", fractures.seed,
                 "Of the network; the same seed draws the same fractures [-].",

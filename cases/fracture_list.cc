@@ -201,6 +201,47 @@ FractureSet fracture_set(const FracturesParameters &p, const std::size_t k)
   set.law = p.law;
   return set;
 }
+
+ParallelSet
+parallel_set(const FracturesParameters &p, const std::size_t k, const double thickness)
+{
+  return {of_set(p.orientation, k) * degree, p.spacing_ratio[k] * thickness,
+          of_set(p.phase, k), p.law};
+}
+
+/// Sets of either kind: how many numbers each list has, and how close parallel ones lie.
+void check_sets(const Parameters &p, std::vector<Finding> &findings)
+{
+  const FracturesParameters &f = p.fractures;
+  if (!f.intensity.empty() && !f.spacing_ratio.empty())
+    findings.push_back({{"Fractures/Intensity", "Fractures/Spacing ratio"},
+                        "sets are drawn or parallel, not both: 'Orientation' belongs to "
+                        "one kind. Give one of the two; others may be in a list or "
+                        "table."});
+  const std::string kind = f.intensity.empty() ? "Spacing ratio" : "Intensity";
+  const std::size_t n = f.n_sets();
+  for (const auto &[name, numbers] :
+       {std::pair{"Orientation", &f.orientation},
+        std::pair{"Orientation deviation", &f.orientation_deviation},
+        std::pair{"Phase", &f.phase}, std::pair{"Mean length", &f.mean_length},
+        std::pair{"Length deviation", &f.length_deviation},
+        std::pair{"Length exponent", &f.length_exponent},
+        std::pair{"Shortest", &f.shortest}, std::pair{"Longest", &f.longest}})
+    if (n > 0 && numbers->size() != 1 && numbers->size() != n)
+      findings.push_back({{std::string("Fractures/") + name, "Fractures/" + kind},
+                          "give one number for all sets, or as many as there are sets (" +
+                              std::to_string(n) + ")."});
+  constexpr double fewest = 2.; // grains between two planes: else no joint is left whole
+  for (const double ratio : f.spacing_ratio)
+    if (ratio * p.layer.thickness < fewest * p.grain_diameter())
+    {
+      findings.push_back({{"Fractures/Spacing ratio", "Layer/Grains across"},
+                          "a spacing of " + short_text(ratio) +
+                              " h is less than two grain diameters: nothing would be left "
+                              "between the fractures. Give more of either."});
+      break;
+    }
+}
 } // namespace
 
 std::vector<Fracture> make_fractures(const Parameters &p, const SectionGeometry &geometry)
@@ -231,6 +272,10 @@ std::vector<Fracture> make_fractures(const Parameters &p, const SectionGeometry 
     }
   if (!problems.empty())
     throw InputError(problems);
+  for (std::size_t k = 0; k < f.spacing_ratio.size(); ++k)
+    for (const Fracture &one :
+         parallel_fractures(region, parallel_set(f, k, geometry.thickness())))
+      fractures.push_back(one);
   return fractures;
 }
 
@@ -256,10 +301,11 @@ void check_fractures(const Parameters &p, std::vector<Finding> &findings)
     findings.push_back({{"Components", "Layer/Bond model"},
                         "fractures need flat joints around them in this version. Give "
                         "flat joint."});
-  if (f.list.empty() && f.table.empty() && f.intensity.empty())
-    findings.push_back({{"Fractures/List", "Fractures/Table", "Fractures/Intensity"},
+  if (f.list.empty() && f.table.empty() && f.n_sets() == 0)
+    findings.push_back({{"Fractures/List", "Fractures/Table", "Fractures/Intensity",
+                         "Fractures/Spacing ratio"},
                         "but fractures are listed in 'Components', and there are none. "
-                        "Give one of the three, or leave fractures out."});
+                        "Give one of the four, or leave fractures out."});
   std::string wrong;
   listed_fractures(f, wrong);
   if (!wrong.empty())
@@ -274,18 +320,7 @@ void check_fractures(const Parameters &p, std::vector<Finding> &findings)
     findings.push_back({{"Fractures/Dilation angle", "Fractures/Friction angle"},
                         "a fracture that dilates by more than its friction angle makes "
                         "energy when it slides. Give a smaller dilation angle."});
-  const std::size_t n = f.intensity.size();
-  for (const auto &[name, numbers] :
-       {std::pair{"Orientation", &f.orientation},
-        std::pair{"Orientation deviation", &f.orientation_deviation},
-        std::pair{"Mean length", &f.mean_length},
-        std::pair{"Length deviation", &f.length_deviation},
-        std::pair{"Length exponent", &f.length_exponent},
-        std::pair{"Shortest", &f.shortest}, std::pair{"Longest", &f.longest}})
-    if (n > 0 && numbers->size() != 1 && numbers->size() != n)
-      findings.push_back({{std::string("Fractures/") + name, "Fractures/Intensity"},
-                          "give one number for all sets, or as many as there are sets (" +
-                              std::to_string(n) + ")."});
+  check_sets(p, findings);
 }
 
 void check_drawn_fractures(const Parameters &p, std::vector<Finding> &findings)

@@ -18,7 +18,7 @@ std::vector<discrete::Fracture> read_fracture_table(const std::string &file,
                                                     const discrete::SmoothJoint &law,
                                                     std::vector<std::string> &problems);
 
-/// All fractures of a deck: of its list, its table, its network, in that order. Throws
+/// All fractures of a deck: of its list, its table, its sets, in that order. Throws
 /// InputError for a network that cannot be drawn.
 std::vector<discrete::Fracture> make_fractures(const Parameters &parameters,
                                                const SectionGeometry &geometry);

@@ -218,9 +218,18 @@ struct FracturesParameters
   std::vector<double> mean_length = {10.}, length_deviation = {2.}; ///< [m]
   std::vector<double> length_exponent = {2.5};
   std::vector<double> shortest = {0.}, longest = {0.}; ///< 0: no bound [m]
-  std::string region = "layer";                        ///< layer | section
+  // Parallel sets that go through, likewise, with the orientations above
+  std::vector<double> spacing_ratio;  ///< over h [-]
+  std::vector<double> phase = {0.5};  ///< of the traces, over the spacing [-]
+  std::string region = "layer";       ///< layer | section
   int seed = 1;
   discrete::SmoothJoint law;
+
+  /// Sets that are drawn, or that are parallel.
+  std::size_t n_sets() const
+  {
+    return intensity.empty() ? spacing_ratio.size() : intensity.size();
+  }
 };
 
 /// Circles in which averages of the grains are recorded.

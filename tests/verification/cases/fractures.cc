@@ -122,6 +122,56 @@ TEST(Fractures, StrengthIsThatOfThePlaneOfWeaknessUnlessItCannotSlide)
   }
 }
 
+TEST(Fractures, ParallelSetsAreLaidAtTheirSpacing)
+{
+  const std::vector<std::string> scene{
+      "Components=layer, walls, servo walls, fractures, damping",
+      "Run/End shortening=5e-5", "Fractures/Orientation=90"};
+  const TemporaryFolder folder;
+  std::vector<std::string> entries = scene;
+  entries.emplace_back("Fractures/Spacing ratio=0.5");
+  const nlohmann::json run = run_specimen(entries, folder.path("run"));
+  // 25 mm apart, at 12.5 and 37.5 mm on either side of the middle of 0.1 m.
+  EXPECT_EQ(result(run, "fractures"), 4.);
+  EXPECT_NEAR(result(run, "fracture_intensity"), 1. / 0.025, 1e-9);
+
+  entries = scene;
+  for (const char *entry : {"Fractures/Spacing ratio=0.5, 0.1", "Fractures/Intensity=20",
+                            "Fractures/Phase=0, 0.2, 0.4"})
+    entries.emplace_back(entry);
+  const Outcome outcome = run_program(specimen(entries) + folder.path("refused"));
+  EXPECT_EQ(outcome.status, 1);
+  for (const char *what : {"sets are drawn or parallel, not both",
+                           "a spacing of 0.1 h is less than two grain diameters",
+                           "'Fractures/Phase'"})
+    EXPECT_NE(outcome.output.find(what), std::string::npos) << what << outcome.output;
+}
+
+TEST(Fractures, OfABentLayerWeakenItWhereTheySlideAndNotAcrossIt)
+{
+  const auto run_quick = [&](const std::vector<std::string> &entries)
+  {
+    const TemporaryFolder folder;
+    const Outcome outcome =
+        run_program("run " ANTIFORM_SOURCE_DIR "/cases/fractures/quick.prm" +
+                    set(entries) + " -o " + folder.path("run"));
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    const nlohmann::json run = summary_of(folder.path("run"));
+    EXPECT_LT(run.at("energy").at("closure_error").get<double>(), 1e-3);
+    return run;
+  };
+  const nlohmann::json intact = run_quick({"Components=layer, walls, damping"});
+  const nlohmann::json oblique = run_quick({"Fractures/Orientation=45"});
+  const nlohmann::json across = run_quick({});
+  // Every h/2 of L = 12 h and two straight ends of 0.115 L each: 14.76 h.
+  EXPECT_EQ(result(across, "fractures"), 30.);
+  // A straight piece slides on healed planes at 45 degrees at 2 c / (1 - mu) = 47 MPa; its
+  // bending, which opens them, leaves the layer less. Planes across it only open.
+  EXPECT_LT(result(oblique, "peak_stress"), 47e6);
+  EXPECT_LT(result(oblique, "peak_stress"), 0.5 * result(intact, "peak_stress"));
+  EXPECT_GT(result(across, "peak_stress"), 0.7 * result(intact, "peak_stress"));
+}
+
 TEST(Fractures, AHealedPlaneHoldsUpToItsCohesion)
 {
   const TemporaryFolder folder;
