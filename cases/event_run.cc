@@ -45,9 +45,8 @@ SteppedRun::Pause EventRun::advance()
   }
   has_recorded_ = true;
   if (const auto load = scene_->events->unstable_from(); load && !was_unstable)
-    log_.line("the balance has become unstable, with the walls held, by a " +
-              std::string(parameters_.bends() ? "strain of bending" : "shortening") +
-              " of " + coupling::shortest_text(*load));
+    log_.line("the balance has become unstable, with the walls held, by a shortening of " +
+              coupling::shortest_text(*load));
   return Pause::none;
 }
 

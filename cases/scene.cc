@@ -174,7 +174,7 @@ double Scene::field_time() const
 
 double Scene::shortening() const
 {
-  if (events != nullptr && !parameters.bends())
+  if (events != nullptr)
     return loading_sign() * events->load();
   if (grips != nullptr)
     return -grips->extension() /

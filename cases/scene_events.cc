@@ -92,11 +92,6 @@ void add_event_loading(Scene &scene)
   driver.stop_drop = 0.; // the record decides
   options.target =
       p.run.end_shortening > 0. ? p.run.end_shortening : p.run.longest_shortening;
-  if (p.bends())
-  {
-    options.target = p.end_bending();
-    options.turn = 1. / p.strain_per_radian();
-  }
   options.pressure = p.confinement() != nullptr ? p.confinement()->pressure : 0.;
   options.height = scene.geometry.thickness();
   options.length = scene.geometry.length() - grips;
@@ -135,13 +130,7 @@ void report_events(const Scene &scene, Summary &summary)
   results["worst_largest_unbalanced"] = {worst.largest, "-"};
   results["worst_unbalanced_over_strength"] = {worst.of_strength, "-"};
   if (const auto load = scene.events->unstable_from())
-  {
-    if (scene.parameters.bends())
-      results["unstable_from_rotation"] = {
-          180. / M_PI * *load / scene.parameters.strain_per_radian(), "deg"};
-    else
-      results["unstable_from_shortening"] = {*load, "-"};
-  }
+    results["unstable_from_shortening"] = {*load, "-"};
   summary.solves = report.solves;
 }
 } // namespace antiform::cases

@@ -55,14 +55,9 @@ void check_turn(const Parameters &p, std::vector<Finding> &findings)
                         "walls that turn do not shorten. Give 0, and 'Walls/End "
                         "rotation' for the end of the run; 'Walls/Shortening before "
                         "turning' is what they press before."});
-  if (p.walls.steps_and_relaxes())
+  if (p.walls.loading != "constant rate")
     findings.push_back({{"Walls/Loading", "Walls/Action"},
-                        "walls turn at a constant rate, or by the event driver. Give one "
-                        "of these."});
-  if (p.walls.follows_events() && p.walls.shortening_before > 0.)
-    findings.push_back({{"Walls/Shortening before turning", "Walls/Loading"},
-                        "the event driver has one load, the rotation. Give 0, or "
-                        "'Walls/Loading' = 'constant rate'."});
+                        "walls turn at a constant rate only. Give 'constant rate'."});
   if (p.run.estimate_rate_error)
     findings.push_back({{"Run/Estimate loading-rate error", "Walls/Action"},
                         "the estimate is of the peak stress of a shortened section. Give "

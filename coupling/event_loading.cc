@@ -65,10 +65,8 @@ std::vector<BearingWall> EventLoading::bearing_walls()
   const bool presses = options_.pressure > 0.;
   std::vector<BearingWall> walls;
   for (discrete::Wall &wall : ends_)
-    walls.push_back({&wall,
-                     wall.turn ? pressing_sense(wall) * options_.turn
-                               : 0.5 * options_.length,
-                     presses && &wall == &ends_.back(), 0.});
+    walls.push_back(
+        {&wall, 0.5 * options_.length, presses && &wall == &ends_.back(), 0.});
   for (discrete::Wall &wall : sides_)
     walls.push_back({&wall, 0., true, 0.});
   return walls;

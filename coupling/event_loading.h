@@ -23,11 +23,10 @@ public:
   struct Options
   {
     DriverSettings driver;
-    double target = 0.; ///< of the load parameter: shortening, extension, or bending [-]
+    double target = 0.;          ///< of the load parameter: shortening, or extension [-]
     double pressure = 0.;        ///< on all sides before [Pa]
     double height = 0.;          ///< of an end [m]
     double length = 0.;          ///< of a side, and that for a shortening of 1 [m]
-    double turn = 0.;            ///< of each end that turns, for a load of 1 [rad]
     double reach = 0.;           ///< of the walls' search for contacts [m]
     std::vector<double> modulus; ///< E* by region [Pa]
     /// Load steps between two looks at the stability of the balance; 0: none.
@@ -51,7 +50,7 @@ public:
   void add_energies(Energies &energies) const override;
   void visit_state(StateArchive &archive) override;
 
-  /// Shortening of the section, its extension, or bending, since the pressure stands [-].
+  /// Shortening of the section, or its extension, since the pressure stands [-].
   double load() const { return driver_->load(); }
   /// Work per unit of it, over the length that it counts on: force of an end [N].
   double force() const { return body().conjugate_force() / options_.length; }

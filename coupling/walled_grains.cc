@@ -42,14 +42,11 @@ void WalledGrains::assemble_walls()
       if (!std::binary_search(in_operator_[w].begin(), in_operator_[w].end(),
                               contact.grain))
         continue;
-      // Change of the gap: n . u of the grain less the way of the wall there.
-      const double way = wall.turn ? -wall_lever(wall, state().grains, contact.grain) *
-                                         std::cos(wall.turn->rotation)
-                                   : 1.;
+      // Change of the gap: n . u of the grain less the way of the wall.
       const std::array<std::pair<Eigen::Index, double>, 3> gap{
           {{3 * contact.grain, wall.normal.x},
            {3 * contact.grain + 1, wall.normal.y},
-           {unknown(w), -way}}};
+           {unknown(w), -1.}}};
       const double stiffness = contact.weight * contact.stiffness;
       for (const auto &[row, a] : gap)
         for (const auto &[column, b] : gap)
@@ -163,8 +160,7 @@ const Eigen::VectorXd &WalledGrains::residual()
   GrainBalance::residual();
   for (std::size_t w = 0; w < walls_.size(); ++w)
   {
-    const Wall &wall = *walls_[w].wall;
-    const double reaction = wall.turn ? wall.turn->moment : wall.reaction;
+    const double reaction = walls_[w].wall->reaction;
     residual_[unknown(w)] = walls_[w].is_loaded ? walls_[w].load - reaction : 0.;
     support_[unknown(w)] = walls_[w].is_loaded ? 0. : reaction;
   }
@@ -184,10 +180,7 @@ void WalledGrains::move(const Eigen::VectorXd &increment)
 {
   GrainBalance::move(increment);
   for (std::size_t w = 0; w < walls_.size(); ++w)
-  {
-    Wall &wall = *walls_[w].wall;
-    (wall.turn ? wall.turn->rotation : wall.displacement) += increment[unknown(w)];
-  }
+    walls_[w].wall->displacement += increment[unknown(w)];
 }
 
 double WalledGrains::load_work(const Eigen::VectorXd &increment) const

@@ -15,16 +15,13 @@ namespace antiform::coupling
 struct BearingWall
 {
   discrete::Wall *wall = nullptr;
-  /// Inward way per unit of the load parameter, of a wall that turns its rotation,
-  /// counter-clockwise [m], [rad].
-  double rate = 0.;
+  double rate = 0.;       ///< inward way per unit of the load parameter [m]
   bool is_loaded = false; ///< it moves freely under `load` instead
   double load = 0.;       ///< inward [N]
 };
 
-/// Bonded grains between rigid frictionless walls, in balance. The place of a wall, or
-/// its rotation where it turns, is an unknown more, behind those of the grains:
-/// prescribed, or of a place free under its load. Contacts
+/// Bonded grains between rigid frictionless walls, in balance. The place of a wall is an
+/// unknown more, behind those of the grains: prescribed, or free under its load. Contacts
 /// of a wall push only; the operator has the springs of all that have pressed so far, so
 /// that it is no softer than the body.
 class WalledGrains : public GrainBalance

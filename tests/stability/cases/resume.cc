@@ -144,6 +144,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "Layer/Length ratio=5", "Layer/Grains across=8",
                  "Walls/Transits per millistrain=100", "Run/Strain multiple of peak=1.05",
                  "Output/Samples per millistrain=4000"}},
+        Variant{"Turned",
+                {"Components=layer, walls, damping", "Walls/Action=turn",
+                 "Walls/End rotation=3", "Walls/Shortening before turning=1e-3",
+                 "Output/Samples per millistrain=4000"}},
         Variant{"Loaded",
                 {"Components=layer, matrix, gravity, surface pressure, "
                  "foundation, walls, damping",
