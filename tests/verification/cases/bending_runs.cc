@@ -186,6 +186,23 @@ TEST(Bending, BreaksAlikeAtHalfTheSpeed)
   EXPECT_NEAR(rotation.front(), result(slow, "first_crack_rotation"), 1e-9);
 }
 
+// A smoke run: the bent layer tears from the crest, and the moment falls.
+TEST(Bending, QuickDeckRuns)
+{
+  const TemporaryFolder folder;
+  const std::string directory = folder.path("run");
+  const Outcome outcome = run_program(
+      "run " ANTIFORM_SOURCE_DIR "/cases/bending/quick.prm -o " + directory);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const auto summary = summary_of(directory);
+  EXPECT_EQ(summary.at("status"), "completed");
+  EXPECT_EQ(result(summary, "first_crack_is_tensile"), 1.);
+  EXPECT_LT(summary.at("energy").at("closure_error"), 1e-3);
+  const CsvTable history(directory + "/history.csv");
+  EXPECT_LT(history.column("wall_moment_Nm").back(),
+            0.5 * result(summary, "peak_moment"));
+}
+
 TEST(Bending, OfWhatDoesNotTurnIsRefusedAllAtOnce)
 {
   const TemporaryFolder folder;
