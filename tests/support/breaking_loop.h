@@ -1,6 +1,6 @@
 #pragma once
 // A bridged model whose core may break: what a scene adds to the loop for it.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include "discrete/contacts.h"
 

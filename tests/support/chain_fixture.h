@@ -1,6 +1,6 @@
 #pragma once
 // Chains of grains that end in a strip of mesh, and wave packets that run along them.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 namespace antiform::coupling::test
 {

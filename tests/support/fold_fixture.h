@@ -4,7 +4,7 @@
 // damping. Unit of length is the grain diameter, of stress the layer's modulus E*.
 #include "continuum/finite_strain_solid.h"
 #include "coupling/mesh_step_check.h"
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Elastic bodies that carry waves through the program's loop.
 #include "coupling/absorbing_component.h"
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 #include "support/solid_fixtures.h"
 
 #include <limits>

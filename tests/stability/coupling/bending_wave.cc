@@ -1,5 +1,5 @@
 // A bending wave runs along a beam of grains through the overlap into a beam of mesh.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

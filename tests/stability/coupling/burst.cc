@@ -1,6 +1,7 @@
 // A brittle burst in the core of a bridged model: a stretched rock on the verge, in which
 // a few weak bonds give way.
 #include "support/breaking_loop.h"
+#include "support/coupling_loop.h"
 #include "support/lattice_patch.h"
 
 #include <gtest/gtest.h>

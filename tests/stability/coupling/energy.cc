@@ -1,6 +1,6 @@
 // Energy, displacement gap and stable step of the undamped loop over a bridged model with
 // its real masses.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 #include "support/figures.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 // turn round, layers of very different stiffness, an overlap one cell wide.
 #include "support/breaking_loop.h"
 #include "support/column_fixture.h"
+#include "support/coupling_loop.h"
 #include "support/lattice_patch.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Damping in the overlap: takes the waves that the mesh cannot carry and leaves the
 // others.
 #include "support/chain_fixture.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // A wave packet runs from the grains through the overlap into the mesh: amplitude that
 // comes back. n is the number of cells per wavelength.
 #include "support/chain_fixture.h"
+#include "support/coupling_loop.h"
 #include "support/figures.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // A beam of grains, overlap and mesh that is forced at its lowest frequency: undamped it
 // swings up at the rate of an oscillator of its modal mass, damped it stays bounded.
 #include "support/column_fixture.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

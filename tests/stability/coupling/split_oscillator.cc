@@ -2,6 +2,7 @@
 // split at its mass, and the program's sub-cycling beside it on a short chain of grains
 // that ends in a mesh.
 #include "support/chain_fixture.h"
+#include "support/coupling_loop.h"
 #include "support/split_oscillator.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // Mesh forces every n steps of the grains: result, energy and what is refused.
 #include "support/chain_fixture.h"
+#include "support/coupling_loop.h"
 
 #include "continuum/errors.h"
 

@@ -1,4 +1,5 @@
 // Surface interface in the loop: rest, energy, stable step.
+#include "support/coupling_loop.h"
 #include "support/surface_fixtures.h"
 
 #include "continuum/errors.h"

@@ -1,5 +1,6 @@
 // Surface interface: what its springs are in a static system, what it keeps from step to
 // step, and how its constraint follows grains that slide.
+#include "support/coupling_loop.h"
 #include "support/files.h"
 #include "support/surface_fixtures.h"
 

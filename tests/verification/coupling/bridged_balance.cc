@@ -1,5 +1,6 @@
 // Grains with a mesh as a body that the event driver balances.
 #include "support/coupled_layer.h"
+#include "support/coupling_loop.h"
 
 #include "continuum/errors.h"
 #include "coupling/bridged_balance.h"

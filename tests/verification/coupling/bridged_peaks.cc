@@ -1,5 +1,6 @@
 // Peaks of layers of grains with a mesh, driven from event to event, against slow motion.
 #include "support/coupled_layer.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

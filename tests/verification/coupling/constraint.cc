@@ -1,6 +1,6 @@
 // The constraint of the bridging domain against dense algebra, its multiplier space and
 // its independence of the number of threads.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include "continuum/errors.h"
 

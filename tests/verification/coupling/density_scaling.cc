@@ -1,6 +1,7 @@
 // Density scaling changes inertia only: equilibrium stays, and the bound on the step with
 // the scaled masses holds.
 #include "support/column_fixture.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

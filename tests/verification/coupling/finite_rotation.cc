@@ -2,7 +2,7 @@
 // forces that turn with the block, and a block that spins.
 #include "coupling/mesh_step_check.h"
 #include "continuum/errors.h"
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Grains of the overlap that nothing holds: found, and tied to the mesh in all.
+#include "support/coupling_loop.h"
 #include "support/lattice_patch.h"
 
 #include "continuum/errors.h"

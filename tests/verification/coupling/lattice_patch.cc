@@ -1,6 +1,7 @@
 // Patch test of the bridging domain on a hexagonal lattice: uniform strain imposed at the
 // outer boundary of the mesh. The lattice's affine field is its equilibrium, so all
 // errors come from the joining.
+#include "support/coupling_loop.h"
 #include "support/figures.h"
 #include "support/lattice_patch.h"
 

@@ -3,6 +3,7 @@
 // unconstrained forces neither holds: on a grain that carries multipliers f = C^T L at
 // rest.
 #include "support/column_fixture.h"
+#include "support/coupling_loop.h"
 
 #include <gtest/gtest.h>
 

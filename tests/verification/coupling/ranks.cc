@@ -1,5 +1,5 @@
 // Grains on every rank, joined to a mesh of one rank and of all of them.
-#include "support/coupling_fixtures.h"
+#include "support/coupling_loop.h"
 
 #include "continuum/errors.h"
 
