@@ -6,8 +6,8 @@
     /usr/bin/python3 cases/shortening/claims.py claims-single claims-multilayer
 
 Takes directories of studies (or of runs), tells each run's model from its deck, and writes
-claims.md (a line a statement, a column a packing) into the first of them. Thresholds were
-fixed before any of these runs was made.
+claims.md (a line a statement, a value a packing) and claims.svg/.png (stress and cracks) into
+the first of them. Thresholds were fixed before any of these runs was made.
 
 Measures. "Cracks" are broken joint elements. 95 % of the peak: the first sample at which the
 axial stress reaches it. Distance to a wall: along x in the section before shortening.
@@ -19,11 +19,15 @@ import argparse
 import os
 import sys
 
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 from run_files import Run, RunError, read_deck  # noqa: E402
+from study_runs import save  # noqa: E402
 
 WEAK, LOWER, UPPER = 2, 0, 3  # regions of three beds, docs/output.md
 ENOUGH = 4  # of five packings
@@ -216,6 +220,28 @@ def runs(models):
     return "\n".join(rows)
 
 
+def draw(models, directory):
+    """A panel a model: stress of each packing, and its cracks on the second axis."""
+    names = sorted({m.name for m in models})
+    figure, panels = plt.subplots(1, len(names), figsize=(4.6 * len(names), 3.6),
+                                  layout="constrained", squeeze=False)
+    for panel, name in zip(panels[0], names):
+        second = panel.twinx()
+        for m in (m for m in models if m.name == name):
+            history, x = m.run.history, 1e3 * m.strain
+            panel.plot(x, 1e-6 * m.stress, color="#1f4fa8", lw=1.1)
+            second.plot(x, history["cracks_tensile"] + history["cracks_shear"],
+                        color="#c0392b", lw=0.9, ls="--")
+        panel.set_title(name, fontsize=10)
+        panel.set(xlabel="shortening (1e-3)", xlim=(0., None), ylim=(0., None))
+        panel.set_ylabel("axial stress (MPa)", color="#1f4fa8")
+        second.set_ylabel("partial cracks", color="#c0392b")
+        second.set_ylim(bottom=0.)
+        for axes in (panel, second):
+            axes.spines["top"].set_visible(False)
+    save(figure, directory, "claims")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("directories", nargs="+")
@@ -233,6 +259,7 @@ def main():
               encoding="utf-8") as out:
         out.write(text)
     print(text)
+    draw(models, arguments.directories[0])
 
 
 if __name__ == "__main__":
