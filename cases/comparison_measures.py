@@ -83,16 +83,23 @@ def grain_diameter(run):
     return None if frame.grains is None else 2. * np.mean(frame.grains.field("radius_m"))
 
 
-def zone_distance(a, b):
+def peak_loading(run):
+    """Shortening, elongation or wall rotation at the peak."""
+    return run.loading().values[np.argmax(run.response().values)]
+
+
+def zone_distance(a, b, up_to_peaks=False):
     """How far the cracks of @p a along the layer must be moved in the mean to lie as those of
     @p b do (Wasserstein distance of their places before shortening), in grain diameters of
-    @p a up to the last common loading; None without cracks in both."""
+    @p a up to the last common loading, or each up to its peak; None without cracks in
+    both."""
     last = min(a.last_loading(), b.last_loading())
     places = []
     for run in (a, b):
         if run.cracks is None or not len(run.cracks["x_m"]):
             return None
-        seen = run.sign() * run.cracks[run.loading_column()] <= last
+        until = peak_loading(run) if up_to_peaks else last
+        seen = run.sign() * run.cracks[run.loading_column()] <= until
         if not seen.any():
             return None
         places.append(run.cracks["reference_x_m"][seen])
@@ -196,7 +203,7 @@ def displacement_difference(a, b):
     None where one has no fields to compare."""
     if len(a.times) < 2 or len(b.times) < 2 or "axial_stress_Pa" not in a.history:
         return None
-    peaks = [run.loading().values[np.argmax(run.response().values)] for run in (a, b)]
+    peaks = [peak_loading(run) for run in (a, b)]
     times = np.abs(np.array(a.times))
     early = times[times <= min(min(peaks), np.abs(b.times).max())]
     if not len(early) or early[-1] == 0.:
