@@ -23,7 +23,7 @@ constexpr double share_of_load_step = 0.6;
 /// Iterations of Newton's method for a load step, measured on the decks of cases/.
 constexpr double iterations_per_load_step = 3.;
 /// A step without equilibrium is halved, again and again.
-constexpr double iterations_to_give_up = 20.;
+constexpr double iterations_to_give_up = 40.;
 
 /// Modulus of one layer of one rock that bends like the beds: as one when cemented, each
 /// on its own when they slide [Pa].
