@@ -58,8 +58,8 @@ void report(const char *what, const Seconds &begin, const double times = 1.)
 {
   const Seconds end = now();
   std::printf("%-26s %10.4f s of the clock %10.4f s of the processor %7.0f MB\n", what,
-              (end.clock - begin.clock) / times, (end.processor - begin.processor) / times,
-              peak_megabytes());
+              (end.clock - begin.clock) / times,
+              (end.processor - begin.processor) / times, peak_megabytes());
   std::fflush(stdout);
 }
 
@@ -128,7 +128,8 @@ int main(int argc, char **argv)
     step();
   report("a step", begin, n_steps);
   const Seconds end = now();
-  std::printf("%zu grains, %zu joints, %zu cracks: %.1f ns of the processor a grain-step\n",
+  std::printf("%zu grains, %zu joints, %zu cracks: %.1f ns of the processor a "
+              "grain-step\n",
               grains.size(), joints.size(), cracks.size(),
               1e9 * (end.processor - begin.processor) / n_steps /
                   static_cast<double>(grains.size()));
