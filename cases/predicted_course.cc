@@ -17,6 +17,9 @@ constexpr double transits_per_load_step = 4.;
 /// specimen each.
 constexpr double transits_of_collapse = 400.;
 
+/// Runs that end before the stress has fallen to this share of its peak are spared it.
+constexpr double stress_before_collapse = 0.8;
+
 /// Share of the largest load step that events leave, on the average.
 constexpr double share_of_load_step = 0.6;
 
@@ -189,7 +192,8 @@ PredictedCourse predict_course(const Parameters &p, const SectionGeometry &g)
     course.steps = course.shortening / (share_of_load_step * p.walls.load_step);
     course.samples = course.steps;
     if (course.shortening > predict_strain_at_peak(p, g) &&
-        p.run.stress_ratio_of_peak > 0.)
+        p.run.stress_ratio_of_peak > 0. &&
+        p.run.stress_ratio_of_peak < stress_before_collapse)
       course.collapse_steps = transits_of_collapse * steps_of_transit(p, g);
   }
   else
