@@ -173,7 +173,11 @@ void Recorder::run(const Stage, const Clock &clock)
     last_high_strain_ = sample.strain;
   last_ = sample;
   if (scene_.mesh && scene_.parameters.run.strain == "small")
-    mesh_watch_.look(*scene_.solid, scene_.mesh->displacement, clock.step);
+  {
+    mesh_watch_.measure(*scene_.solid, scene_.mesh->displacement);
+    if (!falls_below_share(sample))
+      mesh_watch_.demand(clock.step);
+  }
   if (sample.strain >= next_field_)
   {
     write_fields();
@@ -251,6 +255,11 @@ bool Recorder::has_passed_peak() const
                                last_.stress <= 0.9 * peak_stress_);
 }
 
+bool Recorder::falls_below_share(const Sample &sample) const
+{
+  return sample.stress < scene_.parameters.run.stress_ratio_of_peak * peak_stress_;
+}
+
 void Recorder::look_for_end(const Sample &sample)
 {
   const RunParameters &run = scene_.parameters.run;
@@ -272,12 +281,14 @@ void Recorder::look_for_end(const Sample &sample)
   const double fallen = scene_.events != nullptr
                             ? 0.
                             : std::max(fallen_transits * transit, fallen_samples * between);
-  if (sample.stress < run.stress_ratio_of_peak * peak_stress_ &&
-      sample.strain - last_high_strain_ >= fallen)
+  if (falls_below_share(sample) && sample.strain - last_high_strain_ >= fallen)
     why_finished_ = std::string("the wanted share of the peak ") +
                     (bends ? "moment" : "stress");
   if (bends)
     return;
+  // Nothing but the wait for it to last is missing, and the mesh can follow no further.
+  if (falls_below_share(sample) && mesh_watch_.is_beyond())
+    why_finished_ = "the fall of the stress, in which the mesh left small strain";
   const bool peaked = peak_strain_ > 0. && sample.strain - peak_strain_ >= settled;
   if (peaked && sample.strain >= run.strain_multiple_of_peak * peak_strain_)
     why_finished_ = "the wanted multiple of the strain at the peak";

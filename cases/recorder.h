@@ -65,6 +65,7 @@ private:
   void append_history(const coupling::Clock &clock, const Sample &sample);
   void append_cracks();
   void close_ledger(const coupling::Energies &energies);
+  bool falls_below_share(const Sample &sample) const; ///< wanted, of the peak
   void look_for_end(const Sample &sample);
   /// Slope of @p values over the strain while the layer is elastic.
   double elastic_slope(const std::vector<double> &values) const;

@@ -21,6 +21,13 @@ void SmallStrainWatch::look(const continuum::DisplacementSpace &space,
                             const continuum::Vector &displacement,
                             const long step)
 {
+  measure(space, displacement);
+  demand(step);
+}
+
+void SmallStrainWatch::measure(const continuum::DisplacementSpace &space,
+                               const continuum::Vector &displacement)
+{
   dealii::FEValues<2> values(space.fe(), dealii::QMidpoint<2>(),
                              dealii::update_gradients | dealii::update_quadrature_points);
   const dealii::FEValuesExtractors::Vector u(0);
@@ -42,6 +49,15 @@ void SmallStrainWatch::look(const continuum::DisplacementSpace &space,
   const MPI_Comm comm = space.dof_handler().get_communicator();
   largest_rotation = dealii::Utilities::MPI::max(largest_rotation, comm);
   largest_strain = dealii::Utilities::MPI::max(largest_strain, comm);
+}
+
+bool SmallStrainWatch::is_beyond() const
+{
+  return largest_rotation > 2. * rotation_limit || largest_strain > 2. * strain_limit;
+}
+
+void SmallStrainWatch::demand(const long step) const
+{
   if (largest_rotation > 2. * rotation_limit)
     throw NumericalError(
         "mesh",

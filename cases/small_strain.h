@@ -12,11 +12,16 @@ namespace antiform::cases
 class SmallStrainWatch
 {
 public:
-  /// Look at a displacement, ghosts set, in the middle of the cells. Throws
-  /// NumericalError at twice a limit, on all ranks. Collective.
+  /// measure() and demand().
   void look(const continuum::DisplacementSpace &space,
             const continuum::Vector &displacement,
             long step);
+  /// Look at a displacement, ghosts set, in the middle of the cells. Collective.
+  void measure(const continuum::DisplacementSpace &space,
+               const continuum::Vector &displacement);
+  /// Throws NumericalError at twice a limit, on all ranks.
+  void demand(long step) const;
+  bool is_beyond() const; ///< twice a limit
   std::vector<std::string> warnings() const;
 
   double largest_rotation = 0.; ///< so far [rad]
