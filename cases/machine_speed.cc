@@ -201,7 +201,8 @@ double MachineSpeed::grain_step(const double n_grains)
 double MachineSpeed::dof_step(const MeshShape &mesh)
 {
   const MeshShape sample = sample_of(mesh);
-  const auto [place, is_new] = dof_steps_.emplace(name_of(sample), 0.);
+  const auto [place, is_new] =
+      dof_steps_.emplace(std::pair(sample.degree, std::ilogb(sample.dofs())), 0.);
   if (is_new)
   {
     const OneThread scope;
@@ -214,7 +215,7 @@ double MachineSpeed::dof_step(const MeshShape &mesh)
     place->second =
         seconds_of([&] { body->add_internal_force(displacement, force); }) /
         sample.dofs();
-    measured_.push_back({"internal force of " + place->first, sample.dofs(),
+    measured_.push_back({"internal force of " + name_of(sample), sample.dofs(),
                          1e9 * place->second, "a dof"});
   }
   return place->second;

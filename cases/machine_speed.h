@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace antiform::cases
@@ -64,7 +65,8 @@ private:
 
   double start_seconds_, program_memory_;
   std::map<int, double> grain_steps_; ///< by the power of two of their number
-  std::map<std::string, double> dof_steps_;
+  /// By the degree and the power of two of the dofs; their proportions hardly matter.
+  std::map<std::pair<int, int>, double> dof_steps_;
   std::map<std::string, SolvePace> direct_, iterative_;
   std::vector<Measured> measured_;
 };

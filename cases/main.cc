@@ -3,6 +3,7 @@
 #include "cases/output_directory.h"
 #include "cases/strength_envelope.h"
 #include "cases/study.h"
+#include "cases/study_decks.h"
 #include "cases/theory.h"
 #include "continuum/errors.h"
 
@@ -66,7 +67,10 @@ int run_deck(RunOptions options, MPI_Comm communicator)
 
 int check_deck(const CommandLine &line)
 {
-  const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
+  const Parameters parameters =
+      read_deck(line.run.deck, has_study(line.run.deck, line.run.overrides)
+                                   ? overrides_of_scene(line.run.overrides)
+                                   : line.run.overrides);
   return parameters.has("calibration")
              ? check_cost_of_calibration(parameters, line.json, std::cout)
              : check(parameters, line.run, line.json, std::cout);

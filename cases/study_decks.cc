@@ -79,16 +79,6 @@ std::string without_override(const std::string &problem,
   return problem;
 }
 
-/// Those that are not of the section Study.
-std::vector<std::string> overrides_of_scene(const std::vector<std::string> &overrides)
-{
-  std::vector<std::string> of_scene;
-  for (const std::string &text : overrides)
-    if (tidy(text).compare(0, 6, "Study/") != 0)
-      of_scene.push_back(text);
-  return of_scene;
-}
-
 std::map<std::string, Result> theory_figures(const Parameters &p)
 {
   std::map<std::string, Result> figures;
@@ -115,6 +105,15 @@ member_deck(const StudyMember &member, const Parameters &p, MachineSpeed &speed)
   return result;
 }
 } // namespace
+
+std::vector<std::string> overrides_of_scene(const std::vector<std::string> &overrides)
+{
+  std::vector<std::string> of_scene;
+  for (const std::string &text : overrides)
+    if (tidy(text).compare(0, 6, "Study/") != 0)
+      of_scene.push_back(text);
+  return of_scene;
+}
 
 bool has_study(const std::string &file, const std::vector<std::string> &overrides)
 {

@@ -23,6 +23,9 @@ struct MemberDeck
   std::map<std::string, Result> theory;
 };
 
+/// Those of --set that are not of the section Study.
+std::vector<std::string> overrides_of_scene(const std::vector<std::string> &overrides);
+
 /// Whether the deck says what to vary.
 bool has_study(const std::string &file, const std::vector<std::string> &overrides);
 

@@ -230,4 +230,10 @@ TEST(Prediction, OfCostHoldsForEveryDeckOfMinutesLong)
   for (const char *loading : {"event driver", "step and relax"})
     expect_cost("laboratory/uniaxial", {std::string("Walls/Loading=") + loading});
 }
+TEST(Prediction, OfAStudyAreOfTheMembersAskedFor)
+{
+  const json all =
+      check(scene("burial-depth/study", {"Study/Vary=Matrix/Burial depth ratio = 1, 3"}));
+  EXPECT_EQ(all.at("prediction").at("study").at("members"), 2);
+}
 } // namespace predictions_tests
