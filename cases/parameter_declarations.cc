@@ -290,7 +290,8 @@ void declare(RunParameters &run, Declarations &entries)
                  "does; 0: after the peak, as the next three entries say [-].",
                  Number::at_least(0.).below(1.));
   entries.number("Strain multiple of peak", run.strain_multiple_of_peak,
-                 "The run ends at this multiple of the shortening at the peak [-].",
+                 "The run ends at this multiple of the shortening at the peak, and not "
+                 "before the stress has stayed below it for 2e-4 [-].",
                  Number::above(1.));
   entries.number(
       "Stress ratio of peak", run.stress_ratio_of_peak,
