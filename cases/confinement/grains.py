@@ -93,7 +93,7 @@ def draw(curves, line, directory):
 
 
 def report(curves, line, directory):
-    lines = ["| | p, MPa | peak, MPa | peak - p | theory | cracks in tension | in shear "
+    lines = ["| | p, MPa | peak, MPa | peak - p | line | cracks in tension | in shear "
              "| limb dip | ledger | CPU s |",
              "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for way, of in curves.items():
