@@ -6,6 +6,7 @@
 What 'antiform check' chooses by the record for five scenes, with the core seconds that it
 predicts; no run is made.
 """
+import argparse
 import json
 import os
 import subprocess
@@ -37,7 +38,9 @@ def checked(antiform, deck, entries):
 
 
 def main():
-    antiform = sys.argv[1] if len(sys.argv) == 2 else sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("antiform", help="the program")
+    antiform = parser.parse_args().antiform
     print("| scene | error wanted | settings | errors together | core seconds, predicted |\n"
           "| --- | --- | --- | --- | --- |")
     for name, deck, entries in SCENES:

@@ -14,6 +14,7 @@ before the first run:
             that: below 1
   faster    the same over those after it, to the end of the run: below 1
 """
+import argparse
 import os
 import sys
 
@@ -104,10 +105,11 @@ def read(directory):
 
 
 def main():
-    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
-        sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("directories", nargs="+", help="runs of multilayer.prm")
+    directories = parser.parse_args().directories
     try:
-        print("\n".join(table_of([read(directory) for directory in sys.argv[1:]])))
+        print("\n".join(table_of([read(directory) for directory in directories])))
     except RunError as error:
         sys.exit(f"claims.py: {error}")
 
