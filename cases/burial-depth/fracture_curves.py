@@ -32,7 +32,6 @@ WORDS = {"surface interface": "mesh on the layer", "grain cover": "cover of grai
          "bridging domain": "bridged to a mesh"}
 SPLITTING = "#f4a582"
 MAPS = (0.01, 0.1, 1., 10., 100.)
-PLATE = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 MECHANISMS = {1: "crushes", 2: "folds and cracks", 3: "buckles"}
 STRETCH = 4.  # of the maps' heights
 
@@ -111,16 +110,21 @@ def curve(axes, of, value, colour, **style):
                       alpha=1. if m["asked"] == "automatic" else 0.55)
 
 
-def name_mechanisms(axes, of, colour):
-    """At the thinnest cover, and wherever the mechanism is another one than before."""
+def write_row(axes, of, row, colour):
+    """A row of words below the curves: the mechanism at the thinnest cover and wherever it
+    is another one than before, and the jumps where two representations are possible."""
+    def word(H, text, **style):
+        axes.annotate(text, (H, 0.05 + 0.075 * row), color=colour, fontsize=8.5,
+                      xycoords=("data", "axes fraction"), **style)
+
     before = None
-    for m in of:
+    for m in sorted(of, key=lambda m: m["H"]):
         mechanism = MECHANISMS[int(m["results"]["mechanism"])]
         if m["asked"] == "automatic" and mechanism != before:
-            axes.annotate(mechanism, (m["H"], 1e-6 * m["results"]["peak_stress"]),
-                          xytext=(-4, -16), textcoords="offset points", fontsize=8.5,
-                          color=colour, style="italic", bbox=PLATE)
+            word(m["H"], mechanism, style="italic", ha="left" if before is None else "center")
             before = mechanism
+    for _, H, _, _, jump, _ in jumps(of):
+        word(H, f"{100. * jump:+.1f} %", ha="center")
 
 
 def draw_curves(members, axes):
@@ -131,7 +135,7 @@ def draw_curves(members, axes):
     stress.annotate(r"$\gamma=1$: UCS", (0.0075, strength), xytext=(0, 3), fontsize=9,
                     textcoords="offset points")
     highest = max(m["results"]["peak_stress"] for m in members)
-    for colour, contrast in zip(COLOURS, contrasts):
+    for row, (colour, contrast) in enumerate(zip(COLOURS, contrasts)):
         of = [m for m in members if m["contrast"] == contrast]
         line = sorted({(m["H"], m["crushing"], m["buckling"]) for m in of
                        if m["crushing"]})
@@ -140,18 +144,13 @@ def draw_curves(members, axes):
             stress.plot(H, 1e-6 * crushing, color=colour, linewidth=1.1, linestyle="--")
             stress.plot(H, 1e-6 * buckling, color=colour, linewidth=1.1, linestyle=":")
         curve(stress, of, lambda m: 1e-6 * m["results"]["peak_stress"], colour)
-        name_mechanisms(stress, of, colour)
+        write_row(stress, of, row, colour)
         curve(fold, of, lambda m: m["results"]["fold_amplitude_at_peak"] / m["h"], colour)
         curve(dip, of, lambda m: m["results"]["limb_dip_at_peak"], colour)
         curve(cracks, of, lambda m: m["results"]["cracks_tensile_at_peak"] +
               m["results"]["cracks_shear_at_peak"], colour)
         curve(spacing, of, lambda m: (m["results"]["crack_spacing"] / m["h"]
                                       if "crack_spacing" in m["results"] else None), colour)
-        for _, H, _, _, jump, _ in jumps(of):
-            at = min(m["results"]["peak_stress"] for m in of if m["H"] == H)
-            stress.annotate(f"{100. * jump:+.1f} %", (H, 1e-6 * at), xytext=(0, -15),
-                            textcoords="offset points", ha="center", fontsize=8,
-                            color=colour, bbox=PLATE)
     stress.set(ylim=(0., 1.22e-6 * max(highest, members[0]["UCS"])),
                ylabel="peak stress (MPa)")
     small = {"fontsize": 8.5}
