@@ -230,6 +230,7 @@ TEST(Prediction, OfCostHoldsForEveryDeckOfMinutesLong)
   for (const char *loading : {"event driver", "step and relax"})
     expect_cost("laboratory/uniaxial", {std::string("Walls/Loading=") + loading});
 }
+
 TEST(Prediction, OfAStudyAreOfTheMembersAskedFor)
 {
   const json all =
