@@ -64,9 +64,9 @@ def draw(dip, spacing, friction, directory):
     figure.subplots_adjust(left=left, right=0.985, top=0.87, bottom=0.07, hspace=0.1,
                            wspace=0.22)
     for row, what in enumerate(FIGURES):
-        plot(axes[row, 0], grouped(dip, "orientation_degrees"), what, "#c0392b", "o", None)
+        plot(axes[row, 0], grouped(dip, "orientation"), what, "#c0392b", "o", None)
         for (angle, rows), colour, marker in zip(
-                grouped(spacing, "orientation_degrees").items(), ("#2e8b57", "#1f4fa8"), "Ds"):
+                grouped(spacing, "orientation").items(), ("#2e8b57", "#1f4fa8"), "Ds"):
             plot(axes[row, 1], grouped(rows, "spacing_ratio"), what, colour, marker,
                  f"dip {angle:g} degrees")
         if friction:
@@ -135,9 +135,9 @@ def main():
     dip, spacing = rows_of(arguments.dip), rows_of(arguments.spacing)
     friction = rows_of(arguments.friction) if arguments.friction else []
     os.makedirs(arguments.o, exist_ok=True)
-    studies = [(["dip, degrees"], dip, ["orientation_degrees"]),
+    studies = [(["dip, degrees"], dip, ["orientation"]),
                (["dip, degrees", "spacing/h"], spacing,
-                ["orientation_degrees", "spacing_ratio"])]
+                ["orientation", "spacing_ratio"])]
     if friction:
         studies.append((["friction"], friction, ["friction"]))
     report(studies, arguments.o)
