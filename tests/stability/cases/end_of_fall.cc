@@ -21,8 +21,9 @@ bool speaks_of_the_mesh(const std::string &text)
 }
 } // namespace
 
-// Some 15 s of a core each: the member of cases/burial-depth/study-fracture.prm whose mesh
-// turns by 10 degrees within 1.5 % of shortening beyond a fall to a fifth of the peak.
+// Some 15 s of a core each: the member of cases/burial-depth/study-fracture.prm whose
+// stress falls to a fifth, and whose mesh turns by 10 degrees, while the shortening grows
+// by 1.5 %.
 TEST(EndOfFall, IsWhereTheMeshLeavesSmallStrainLong)
 {
   const TemporaryFolder folder;
