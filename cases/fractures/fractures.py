@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Fractures and beds: peak, cracks and limb dip against dip, spacing and friction.
 
-    /usr/bin/python3 cases/fractures/fractures.py DIP SPACING [FRICTION] [-o DIR]
+    /usr/bin/python3 cases/fractures/fractures.py DIP SPACING [FRICTION] [--close CLOSE] [-o DIR]
 
 Takes the directories of study-dip.prm, study-spacing.prm and, where run, of
-study-friction.prm; writes fractures.svg/.png (means over packings with their range) and the
+study-friction.prm and study-close.prm; writes fractures.svg/.png (means over packings with their range) and the
 table fractures.md. The limb dip is the steeper limb's where the run ended, at a shortening
 of 0.3 %, less what the layer was laid down with.
 """
@@ -46,17 +46,17 @@ def values(rows, figure):
     return np.array([float(row[name]) * scale - origin for row in rows])
 
 
-def plot(axes, groups, figure, colour, marker, text):
+def plot(axes, groups, figure, colour, marker, text, line="-"):
     x = list(groups)
     found = [values(rows, figure) for rows in groups.values()]
     mean = np.array([v.mean() for v in found])
     off = [mean - [v.min() for v in found], [v.max() for v in found] - mean]
     axes.errorbar(x, mean, yerr=off, color=colour, marker=marker, markersize=6,
                   markerfacecolor="white", markeredgewidth=1.5, linewidth=1.1,
-                  capsize=3, label=text)
+                  linestyle=line, capsize=3, label=text)
 
 
-def draw(dip, spacing, friction, directory):
+def draw(dip, spacing, friction, close, directory):
     columns = 3 if friction else 2
     figure, axes = plt.subplots(3, columns, figsize=(0.6 + 3.8 * columns, 8.8),
                                 sharex="col")
@@ -69,6 +69,10 @@ def draw(dip, spacing, friction, directory):
                 grouped(spacing, "orientation").items(), ("#2e8b57", "#1f4fa8"), "Ds"):
             plot(axes[row, 1], grouped(rows, "spacing_ratio"), what, colour, marker,
                  f"dip {angle:g} degrees")
+            fine = [one for one in close if float(one["orientation"]) == angle]
+            if fine:
+                plot(axes[row, 1], grouped(fine, "spacing_ratio"), what, colour, marker,
+                     f"{angle:g}, 20 grains across", line=":")
         if friction:
             plot(axes[row, 2], grouped(friction, "friction"), what, "#762a83", "^", None)
         axes[row, 0].set_ylabel(what[3])
@@ -76,7 +80,7 @@ def draw(dip, spacing, friction, directory):
             if what[0] != "limb_dip_deg":
                 one.set_ylim(bottom=0.)
             one.grid(color="#e5e5e5", linewidth=0.6)
-    axes[0, 1].legend(frameon=False, fontsize=9, loc="center right")
+    axes[0, 1].legend(frameon=False, fontsize=8, loc="center right")
     axes[2, 0].set(xlabel="dip of the fractures  [degrees]", xticks=range(0, 91, 15))
     axes[2, 1].set(xlabel="spacing over thickness  [-]")
     titles = ["Dip, half a thickness apart", "Spacing", "Three beds in a membrane"]
@@ -130,18 +134,23 @@ def main():
     parser.add_argument("dip")
     parser.add_argument("spacing")
     parser.add_argument("friction", nargs="?")
+    parser.add_argument("--close", help="of study-close.prm")
     parser.add_argument("-o", default=".", help="for the picture and the table")
     arguments = parser.parse_args()
     dip, spacing = rows_of(arguments.dip), rows_of(arguments.spacing)
     friction = rows_of(arguments.friction) if arguments.friction else []
+    close = rows_of(arguments.close) if arguments.close else []
     os.makedirs(arguments.o, exist_ok=True)
     studies = [(["dip, degrees"], dip, ["orientation"]),
                (["dip, degrees", "spacing/h"], spacing,
                 ["orientation", "spacing_ratio"])]
+    if close:
+        studies.append((["dip, degrees", "spacing/h, 20 grains across"], close,
+                        ["orientation", "spacing_ratio"]))
     if friction:
         studies.append((["friction"], friction, ["friction"]))
     report(studies, arguments.o)
-    draw(dip, spacing, friction, arguments.o)
+    draw(dip, spacing, friction, close, arguments.o)
 
 
 if __name__ == "__main__":
