@@ -30,17 +30,37 @@ struct SlowLoading
   double peak_seconds = 0., seconds = 0.; ///< of the processor
 };
 
+/// Transits up to the peak at which local damping rubs no more than 1 or 2 %.
+constexpr double very_slow = 2000.;
+
+/// Cundall's, 0.7: what a break sets free comes to rest soonest, but a body on the move
+/// is rubbed (docs/theory/damping.md).
+inline discrete::GrainDamping local_damping()
+{
+  discrete::GrainDamping damping;
+  damping.coefficient = 0.7;
+  return damping;
+}
+/// Leaves the drift alone, and damps what vibrates on it by half.
+inline discrete::GrainDamping combined_damping()
+{
+  discrete::GrainDamping damping = local_damping();
+  damping.combined = true;
+  return damping;
+}
+
 /// Shorten @p specimen at a constant rate: @p transits times the way of a sound wave
 /// along its height for a shortening of @p strain. It ends when bonds have broken and the
 /// stress is @p stop_drop below the largest so far, 0: at @p strain. Densities are
-/// scaled; damping is combined, 0.7, so that the drift does not rub. Constant loads are
-/// in balance before. @p watch gets the stress [Pa] at every step.
+/// scaled. Constant loads are in balance before. @p watch gets the stress [Pa] at every
+/// step.
 inline SlowLoading slow_loading(Specimen &specimen,
                                 const double transits,
                                 const double strain,
                                 const double stop_drop = 0.,
                                 const std::vector<GrainLoad> &loads = {},
-                                const std::function<void(double)> &watch = {})
+                                const std::function<void(double)> &watch = {},
+                                discrete::GrainDamping damping = combined_damping())
 {
   GrainBalance body(specimen.state, specimen.platens, loads);
   discrete::Grains &grains = specimen.state.grains;
@@ -59,15 +79,13 @@ inline SlowLoading slow_loading(Specimen &specimen,
   for (const double inverse : grains.inverse_mass)
     mass += 1. / inverse;
   const double speed = std::sqrt(modulus * specimen.width * specimen.height / mass);
-  const double dt = 0.8 * discrete::stable_step(grains, joints) / std::sqrt(1.7);
+  const double dt = 0.8 * discrete::stable_step(grains, joints) /
+                    std::sqrt(1. + damping.coefficient);
   const double rate = strain / (transits * specimen.height / speed);
   for (const PrescribedMotion &platen : specimen.platens)
     (platen.component == 0 ? grains.velocity_x : grains.velocity_y)[platen.grain] =
         rate * platen.rate;
 
-  discrete::GrainDamping damping;
-  damping.coefficient = 0.7;
-  damping.combined = true;
   SlowLoading result;
   const double start = processor_seconds();
   const double most = stop_drop > 0. ? 10. * strain : strain;

@@ -92,7 +92,7 @@ Folding fold_in_time(const int seed, const double transits, const double shorten
       result.path.emplace_back(stress, layer.amplitude());
   };
   const SlowLoading slow =
-      slow_loading(layer, transits, shortening, stop_drop, {}, watch);
+      slow_loading(layer, transits, shortening, stop_drop, {}, watch, local_damping());
   result.peak = slow.peak;
   result.shortening = slow.peak_strain;
   result.zone = zone_of(layer);
@@ -108,14 +108,13 @@ double growth_ratio(const Folding &one, const Folding &other)
          (other.amplitude_at(stress) - BentLayer::initial_rise);
 }
 
-/// Twenty packings, driven and slowly loaded.
-constexpr int n_packings = 20;
+/// Packings, driven and slowly loaded: 60 periods of their slowest sway to the peak.
+constexpr int n_packings = 10;
 
-/// Of the driver over slow loading.
+/// Means of the driver over slow loading.
 struct Comparison
 {
-  double peak = 0., growth = 0., zone = 0., other_zone = 0.; ///< means
-  int n_near = 0;                                            ///< peaks within 10 %
+  double peak = 0., growth = 0., zone = 0., other_zone = 0.;
 };
 
 Comparison compare()
@@ -125,7 +124,7 @@ Comparison compare()
   for (int seed = 1; seed <= n_packings; ++seed)
   {
     const Folding with = fold_by_events(seed),
-                  slow = fold_in_time(seed, 500., with.shortening);
+                  slow = fold_in_time(seed, very_slow, with.shortening);
     const double peak = with.peak / slow.peak, growth = growth_ratio(with, slow),
                  zone = correlation(with.zone, slow.zone);
     std::printf("seed %2d: %.2f and %.2f MPa, %.3f; growth %.3f; zones %.2f; books open "
@@ -133,12 +132,9 @@ Comparison compare()
                 seed, 1e-6 * with.peak, 1e-6 * slow.peak, peak, growth, zone, with.open,
                 with.open_at_end);
     std::fflush(stdout);
-    // Slow loading of the third packing at other rates and dampings finds 22.5 to 27.2
-    // MPa.
-    EXPECT_NEAR(peak, 1., 0.25) << "seed " << seed;
+    EXPECT_NEAR(peak, 1., 0.1) << "seed " << seed;
     EXPECT_NEAR(growth, 1., 0.06) << "seed " << seed;
     EXPECT_LT(with.open, 1e-3) << "seed " << seed;
-    mean.n_near += std::abs(peak - 1.) < 0.1 ? 1 : 0;
     mean.peak += peak / n_packings;
     mean.growth += growth / n_packings;
     mean.zone += zone / n_packings;
@@ -152,19 +148,16 @@ Comparison compare()
 }
 } // namespace
 
-// 500 transits up to the driver's peak, with the speed of sound by the stiffness of the
-// bent layer: 15 periods of its slowest sway. One peak scatters by some 6 %, so that the
-// mean of twenty has a standard error of 1.5 %. All layers have their hinges at the crest
-// and at the ends, so that other packings are not as foreign as with specimens.
+// Slow loading with local damping, since under the combined form cracks run on that all
+// other ways arrest (docs/theory/quasi_static_driver.md, 5), and slow enough that it does
+// not rub. All layers have their hinges at the crest and at the ends, so that other
+// packings are not as foreign as with specimens.
 TEST(EventDriverLayers, FoldAndFailAsSlowlyLoadedOnesDoLong)
 {
   const Comparison mean = compare();
-  std::printf(
-      "means: peak %.4f, %d of %d within 10 %%; growth %.4f; zones %.3f, of other "
-      "packings %.3f\n",
-      mean.peak, mean.n_near, n_packings, mean.growth, mean.zone, mean.other_zone);
+  std::printf("means: peak %.4f; growth %.4f; zones %.3f, of other packings %.3f\n",
+              mean.peak, mean.growth, mean.zone, mean.other_zone);
   EXPECT_NEAR(mean.peak, 1., 0.025);
-  EXPECT_GE(mean.n_near, 17);
   EXPECT_NEAR(mean.growth, 1., 0.03);
   EXPECT_GT(mean.zone, 0.7);
   EXPECT_LT(mean.other_zone, mean.zone - 0.25);
@@ -174,8 +167,8 @@ TEST(EventDriverLayers, FoldAndFailAsSlowlyLoadedOnesDoLong)
 TEST(EventDriverLayers, HaveAReferenceThatIsSlowEnoughLong)
 {
   const double shortening = fold_by_events(1).shortening;
-  const Folding one = fold_in_time(1, 500., shortening),
-                slower = fold_in_time(1, 1000., shortening);
+  const Folding one = fold_in_time(1, very_slow, shortening),
+                slower = fold_in_time(1, 2. * very_slow, shortening);
   std::printf("%.2f and %.2f MPa, growth %.4f, zones %.3f\n", 1e-6 * one.peak,
               1e-6 * slower.peak, growth_ratio(one, slower),
               correlation(one.zone, slower.zone));

@@ -38,15 +38,15 @@ Zone driver_zone(const std::uint64_t seed, const bool with_local_moves)
 Zone slow_zone(const std::uint64_t seed)
 {
   Specimen specimen(size, seed);
-  slow_loading(specimen, 500., 0.0022, 0.1); // 500 transits to the peak
+  slow_loading(specimen, very_slow, 0.0022, 0.1, {}, {}, local_damping());
   return zone_of(specimen);
 }
 } // namespace
 
-// Which of two bands across a specimen wins is as chaotic as its peak: the measure of
+// Which of two bands across a specimen wins may be as chaotic as its peak: the measure of
 // that is the same driver without local moves, which breaks the same bonds in another
-// order. Another packing fails elsewhere. Slow loading at half the rate has 0.94 in
-// common with itself in the mean, other packings 0.2: half-way counts as the same zone.
+// order. Other packings fail elsewhere, with 0.2 in common: half-way to 1 counts as the
+// same zone.
 TEST(EventDriverZones, AreThoseOfSlowLoadingUpToTheDriversOwnChaosLong)
 {
   std::vector<Zone> with, without, slow;
@@ -76,9 +76,9 @@ TEST(EventDriverZones, AreThoseOfSlowLoadingUpToTheDriversOwnChaosLong)
         other += correlation(with[k], slow[m]) / (n_packings * (n_packings - 1));
   std::printf("%d of %d; means %.3f, %.3f, %.3f; other packings %.3f\n", n_same,
               n_packings, same, same_without, own, other);
-  EXPECT_GE(n_same, 7);
-  EXPECT_GT(same, 0.65);
-  EXPECT_GT(same_without, 0.65);
+  EXPECT_GE(n_same, 8);
+  EXPECT_GT(same, 0.75);
+  EXPECT_GT(same_without, 0.8);
   EXPECT_NEAR(same, own, 0.15);
   EXPECT_LT(other, 0.35);
 }
