@@ -10,6 +10,7 @@
 #include "support/grain_fixtures.h"
 #include "support/plain_damage.h"
 #include "support/plain_joint.h"
+#include "support/processor.h"
 
 #include <omp.h>
 
@@ -18,7 +19,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <functional>
 #include <string>
 
@@ -31,15 +31,6 @@ namespace
 {
 using namespace antiform::discrete;
 using namespace antiform::discrete::test;
-
-std::string processor()
-{
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0)
-      return line.substr(line.find(':') + 2);
-  return "unknown";
-}
 
 enum class State
 {
@@ -391,7 +382,7 @@ int main(int argc, char **argv)
 {
   const int repetitions = argc > 1 ? std::max(1, std::atoi(argv[1])) : 7;
   const char *commit = std::getenv("ANTIFORM_COMMIT");
-  std::printf("%s, kernel level %s, commit %s\n", processor().c_str(),
+  std::printf("%s, kernel level %s, commit %s\n", antiform::test::processor().c_str(),
               joint_kernel_level().c_str(), commit != nullptr ? commit : "unknown");
   print_steps(repetitions);
   print_contraction(repetitions);

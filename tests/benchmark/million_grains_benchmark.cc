@@ -7,6 +7,8 @@
 #include "discrete/joints.h"
 #include "discrete/packing.h"
 
+#include "support/processor.h"
+
 #include <omp.h>
 #include <sys/resource.h>
 
@@ -15,22 +17,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <string>
 
 namespace
 {
 using namespace antiform::discrete;
 using antiform::Vec2;
-
-std::string processor()
-{
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0)
-      return line.substr(line.find(':') + 2);
-  return "unknown";
-}
 
 double peak_megabytes()
 {
@@ -86,7 +78,7 @@ int main(int argc, char **argv)
   const auto n_grains = static_cast<std::size_t>(argc > 1 ? std::atof(argv[1]) : 1e6);
   const int n_steps = argc > 2 ? std::atoi(argv[2]) : 100;
   omp_set_num_threads(argc > 3 ? std::atoi(argv[3]) : 1);
-  std::printf("%s, kernel level %s, %d threads\n", processor().c_str(),
+  std::printf("%s, kernel level %s, %d threads\n", antiform::test::processor().c_str(),
               joint_kernel_level().c_str(), omp_get_max_threads());
 
   PackingParameters packing;
