@@ -19,7 +19,7 @@ double value(const nlohmann::json &envelope, const std::string &name)
 }
 } // namespace
 
-// Cases 27 and 28 of the verification list: least squares by hand.
+// Cases 27 and 28 of docs/validation.md: least squares by hand.
 TEST(Envelope, OfTheLimestonesIsThatOfTheSource)
 {
   const Outcome outcome = run_program("envelope --json " ANTIFORM_SOURCE_DIR

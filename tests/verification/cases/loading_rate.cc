@@ -1,4 +1,4 @@
-// Case 32 of the verification list: walls at half the speed leave the strength as it is.
+// Case 32 of docs/validation.md: walls at half the speed leave the strength as it is.
 #include "support/tiny_run.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Case 31 of the verification list: what 10, 20 and 40 grains across the layer make of it.
+// Case 31 of docs/validation.md: what 10, 20 and 40 grains across the layer make of it.
 #include "support/tiny_run.h"
 
 #include <array>

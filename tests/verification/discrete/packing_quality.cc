@@ -1,4 +1,4 @@
-// Case 23 of the verification list: the quality of a packing, and what it is asked for.
+// Case 23 of docs/validation.md: the quality of a packing, and what it is asked for.
 #include "discrete/locked_in.h"
 #include "discrete/measurement_circles.h"
 #include "discrete/packing.h"
