@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """The figures of docs/theory/bridging.md, from what its tests measure.
 
-usage: ANTIFORM_FIGURES=DIR build/tests/verification_coupling (and stability_coupling)
-       docs/pictures/bridging_figures.py DIR
+  ANTIFORM_FIGURES=DIR build/tests/verification_coupling    (and stability_coupling)
+  /usr/bin/python3 docs/pictures/bridging_figures.py DIR
 
 With ANTIFORM_FIGURES set the tests write their tables into DIR (tests/support/figures.h):
 patch_error, joint_forces_1 to _3, reflection, reflection_lattice, energy_smooth,
 energy_noise, buckling_*. This writes bridging_*.svg beside itself, and .png into DIR.
 """
+import argparse
 import csv
 import glob
 import os
@@ -234,11 +235,13 @@ def draw_buckling(directory):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", help="with the tables of the tests, and for the .png")
+    directory = parser.parse_args().directory
     for draw in (draw_patch, draw_joint_forces, draw_reflection, draw_energy,
                  draw_buckling):
-        draw(sys.argv[1])
+        draw(directory)
 
 
 if __name__ == "__main__":
