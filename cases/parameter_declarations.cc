@@ -199,12 +199,14 @@ void declare(WallsParameters &walls, Declarations &entries)
                  "Width of each grip over the mean grain diameter (pull) [-].",
                  Number::at_least(1.));
   entries.number("End rotation", walls.end_rotation,
-                 "Of each wall, at which the run ends at the latest (turn) [degrees].",
+                 "Of each wall, at which the run ends at the latest: > 0 where walls turn, 0 "
+                 "where they do not [degrees].",
                  Number::at_least(0.).up_to(30.));
   entries.number("Shortening before turning", walls.shortening_before,
                  "By which the walls press the section first, and keep their centres "
-                 "there as they turn (turn, at a constant rate) [-].",
-                 Number::at_least(0.).below(0.1));
+                 "there as they turn (turn, at a constant rate): small strain, and of a "
+                 "layer that may break at most UCS/E', which would crush it [-].",
+                 Number::at_least(0.).up_to(0.02));
   entries.leave();
 }
 

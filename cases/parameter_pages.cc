@@ -65,7 +65,8 @@ std::string describe_parameters(const std::string &name)
     for (std::string word; words >> word;)
       names.push_back(word);
     if (lower(entry.path).find(lower(name)) != std::string::npos)
-      text += entry.path + "\n    default: " + entry.default_value +
+      text += entry.path + "\n    default: " +
+              (entry.default_value.empty() ? "(empty)" : entry.default_value) +
               "\n    range:   " + range_in_words(entry) + "\n    " + entry.documentation +
               "\n";
   }
@@ -99,7 +100,8 @@ std::string parameters_markdown()
           text += "\n\nRead: " + known.read_when + ".";
       text += "\n\n| entry | default | range | meaning |\n| --- | --- | --- | --- |\n";
     }
-    text += "| " + entry_name(entry.path) + " | " + entry.default_value + " | " +
+    text += "| " + entry_name(entry.path) + " | " +
+            (entry.default_value.empty() ? "(empty)" : entry.default_value) + " | " +
             range_in_words(entry) + " | " + entry.documentation + " |\n";
   }
   return text;

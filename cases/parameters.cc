@@ -390,8 +390,11 @@ private:
     const std::string unit = is_number ? unit_of(entry) : "";
     problems_.push_back(line.place + ": '" + entry.path + "' = '" + line.value + "' " +
                         what + ". Give " + range_in_words(entry) +
-                        (unit.empty() ? "" : " ") + unit + "; the default is " +
-                        entry.default_value + ".");
+                        (unit.empty() ? "" : " ") + unit +
+                        (entry.default_value.empty()
+                             ? ""
+                             : "; the default is " + entry.default_value) +
+                        ".");
   }
 
   /// A table is looked for from the deck that names it, like an include. Its path becomes

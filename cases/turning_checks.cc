@@ -49,7 +49,23 @@ void check_turn(const Parameters &p, std::vector<Finding> &findings)
   if (p.walls.end_rotation == 0.)
     findings.push_back({{"Walls/End rotation", "Walls/Action"},
                         "the walls would turn for ever. Give the rotation of each wall "
-                        "at which the run ends, in degrees, > 0."});
+                        "at which the run ends, > 0 and <= 30 degrees."});
+  for (int k = 0; k < p.n_beds(); ++k)
+  {
+    const LayerParameters &rock = p.bed(k);
+    const double modulus =
+        rock.young_modulus / (1. - rock.poisson_ratio * rock.poisson_ratio);
+    const double crushing = rock.compressive_strength / modulus;
+    if (!rock.joint.breakable || p.walls.shortening_before <= crushing)
+      continue;
+    findings.push_back(
+        {{"Walls/Shortening before turning", "Layer/UCS", "Layer/Young modulus"},
+         "would press the layer with " +
+             short_text(1e-6 * p.walls.shortening_before * modulus) +
+             " MPa and crush it before it turns. Give at most UCS/E' = " +
+             short_text(crushing) + "."});
+    break;
+  }
   if (p.run.end_shortening > 0.)
     findings.push_back({{"Run/End shortening", "Walls/Action"},
                         "walls that turn do not shorten. Give 0, and 'Walls/End "

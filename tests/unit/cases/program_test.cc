@@ -84,6 +84,20 @@ TEST(Program, HelpsOnceAndEndsWell)
   EXPECT_EQ(occurrences(outcome.output, "Example:"), 1u) << outcome.output;
 }
 
+TEST(Program, NamesNoDefaultWhereThereIsNone)
+{
+  const std::string deck =
+      std::string(ANTIFORM_SOURCE_DIR) + "/cases/fractures/quick.prm";
+  const Outcome outcome = run_program("check " + deck + " --set Fractures/Intensity=much");
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("'Fractures/Intensity' = 'much' is no such list"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(outcome.output.find("the default is"), std::string::npos) << outcome.output;
+  const Outcome page = run_program("parameters \"Fractures/Table\"");
+  EXPECT_NE(page.output.find("default: (empty)"), std::string::npos) << page.output;
+}
+
 TEST(Program, EndsWithOneForACommandThatDoesNotExist)
 {
   const Outcome outcome = run_program("fold out");

@@ -224,6 +224,31 @@ TEST(Bending, OfWhatDoesNotTurnIsRefusedAllAtOnce)
     EXPECT_NE(pressing.output.find(words), std::string::npos) << words << pressing.output;
 }
 
+// Before the walls turn they must not crush what they are to bend: UCS/E' of a plane layer.
+TEST(Bending, OfALayerThatPressingWouldCrushIsRefused)
+{
+  const double crushing = 162e6 / (56e9 / (1. - 0.2 * 0.2));
+  const auto check = [&](const double shortening, const std::string &more)
+  {
+    return run_program(
+        "check " + tiny_deck() +
+        set(straight(8, 8.,
+                     {"Walls/Action=turn", "Walls/End rotation=2", "Layer/UCS=162e6",
+                      "Layer/Young modulus=56e9", "Layer/Poisson ratio=0.2",
+                      "Walls/Shortening before turning=" + std::to_string(shortening),
+                      more})));
+  };
+  EXPECT_EQ(check(0.99 * crushing, "Layer/Breakable=true").status, 0);
+  const Outcome crushed = check(1.01 * crushing, "Layer/Breakable=true");
+  EXPECT_EQ(crushed.status, 1) << crushed.output;
+  for (const char *words : {"1 problem", "'Walls/Shortening before turning'",
+                            "163.6 MPa", "at most UCS/E' = 0.002777"})
+    EXPECT_NE(crushed.output.find(words), std::string::npos) << words << crushed.output;
+  EXPECT_EQ(check(1.01 * crushing, "Layer/Breakable=false").status, 0);
+  // Beyond small strain nothing helps.
+  EXPECT_EQ(check(0.021, "Layer/Breakable=false").status, 1);
+}
+
 TEST(Bending, IsSaidByCheck)
 {
   const Outcome outcome = run_program(
