@@ -65,11 +65,13 @@ RunOutcome read_outcome(const std::string &folder)
   outcome.status = summary.value("status", std::string("waiting"));
   if (!outcome.has_ended())
     return outcome;
+  outcome.warnings = summary.value("warnings", std::vector<std::string>());
   if (outcome.status == "failed")
   {
-    const auto warnings = summary.value("warnings", std::vector<std::string>());
-    outcome.reason =
-        warnings.empty() ? last_line_of(folder + "/log.txt") : warnings.back();
+    outcome.reason = outcome.warnings.empty() ? last_line_of(folder + "/log.txt")
+                                              : outcome.warnings.back();
+    if (!outcome.warnings.empty())
+      outcome.warnings.pop_back();
   }
   read_figures(summary, outcome);
   return outcome;

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace antiform::cases
 {
@@ -14,6 +15,7 @@ struct RunOutcome
   /// waiting (not begun, or killed) | running | completed | failed | interrupted
   std::string status = "waiting";
   std::string reason; ///< why it failed
+  std::vector<std::string> warnings; ///< of its summary, but for that reason
   /// The numbers of its summary: results by name, others as "sizes/grains", "steps".
   std::map<std::string, Result> figures;
   std::set<std::string> results; ///< names of those that are results

@@ -172,8 +172,9 @@ int run_study(const RunOptions &given, const int jobs_wanted)
   const bool interrupted = !went_through || members.count("interrupted") > 0;
   const bool failed = members.count("failed") > 0;
   write(members, interrupted ? "interrupted" : (failed ? "failed" : "completed"));
-  for (const std::string &text : table.missing(members))
-    log.line("warning: " + text);
+  for (const auto &texts : {table.missing(members), StudyTable::warnings_of(members)})
+    for (const std::string &text : texts)
+      log.line("warning: " + text);
   log.line(end_in_words(members, elapsed()));
   log.line(
       (interrupted ? "interrupted: the same command goes on; so far in " : "table: ") +

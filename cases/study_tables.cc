@@ -26,6 +26,16 @@ std::string csv_cell(const std::string &text)
   return quoted + "\"";
 }
 
+/// What is left of a warning that other members have with other numbers.
+std::string without_numbers(const std::string &text)
+{
+  std::string kind;
+  for (const char c : text)
+    if (std::string("0123456789.+-e").find(c) == std::string::npos)
+      kind += c;
+  return kind;
+}
+
 /// "Pa" of a documentation that ends in "[Pa].", "-" of one without.
 std::vector<std::string> units_of(const std::vector<std::string> &paths)
 {
@@ -144,8 +154,11 @@ std::string StudyTable::json(const StudyMembers &members,
 {
   using Json = nlohmann::ordered_json;
   const std::vector<Column> all = columns(members);
+  std::vector<std::string> warnings = missing(members);
+  for (const std::string &text : warnings_of(members))
+    warnings.push_back(text);
   Json json = {{"title", title},           {"version", ANTIFORM_VERSION},
-               {"status", status},         {"warnings", missing(members)},
+               {"status", status},         {"warnings", warnings},
                {"wall_seconds", seconds},  {"vary", Json::array()},
                {"collect", Json::array()}, {"members", Json::array()}};
   for (std::size_t i = 0; i < paths_.size(); ++i)
@@ -163,6 +176,8 @@ std::string StudyTable::json(const StudyMembers &members,
                 {"figures", Json::object()}};
     if (!outcome.reason.empty())
       one["reason"] = outcome.reason;
+    if (!outcome.warnings.empty())
+      one["warnings"] = outcome.warnings;
     for (std::size_t i = 0; i < paths_.size(); ++i)
       one["values"][value_names_[i]] = member.values[i];
     for (const Column &column : all)
@@ -171,6 +186,40 @@ std::string StudyTable::json(const StudyMembers &members,
     json["members"].push_back(one);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> StudyTable::warnings_of(const StudyMembers &members)
+{
+  struct Warned
+  {
+    std::string kind, text, member; ///< as the first one has it
+    std::size_t n = 0;
+  };
+  std::vector<Warned> all;
+  std::size_t n_ended = 0;
+  for (std::size_t k = 0; k < members.decks().size(); ++k)
+  {
+    n_ended += members.outcomes()[k].has_ended() ? 1 : 0;
+    std::set<std::string> of_member; // one that warns twice of a kind counts once
+    for (const std::string &text : members.outcomes()[k].warnings)
+    {
+      const std::string kind = without_numbers(text);
+      if (!of_member.insert(kind).second)
+        continue;
+      auto known = std::find_if(all.begin(), all.end(),
+                                [&](const Warned &one) { return one.kind == kind; });
+      if (known == all.end())
+        known = all.insert(all.end(), {kind, text, members.decks()[k].member.name, 0});
+      ++known->n;
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Warned &one : all)
+    texts.push_back(std::to_string(one.n) + " of " + std::to_string(n_ended) +
+                    (n_ended == 1 ? " member" : " members") +
+                    (one.n == 1 ? " warns (" : " warn (the first: ") + one.member +
+                    "): " + one.text);
+  return texts;
 }
 
 std::vector<std::string> StudyTable::missing(const StudyMembers &members) const

@@ -25,6 +25,9 @@ public:
                    double seconds) const;
   /// Collected names that no member which has ended has, in words.
   std::vector<std::string> missing(const StudyMembers &members) const;
+  /// What members that have ended warn of, in words: each warning once, be it with other
+  /// numbers, and how many have it.
+  static std::vector<std::string> warnings_of(const StudyMembers &members);
 
 private:
   struct Column

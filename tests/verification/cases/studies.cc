@@ -248,6 +248,34 @@ TEST(Study, GoesOnWithTheOthersWhenOneFails)
   EXPECT_EQ(ends_of(out), ends);
 }
 
+TEST(Study, TellsOfItsMembersWarnings)
+{
+  // Six of the columns of half a wave are enough; three and four are not.
+  const std::vector<std::string> three{
+      "Layer/Length ratio=192.8", "Matrix/Base depth ratio=100", "Run/Modes=3",
+      "Matrix/Refinement rounds=0", "Matrix/Largest cell ratio=100",
+      "Study/Vary=Matrix/Cell aspect ratio = 16, 24.1, 32.1"};
+  const TemporaryFolder folder;
+  const std::string out = folder.path("out"),
+                    deck = ANTIFORM_SOURCE_DIR "/cases/burial-depth/buckling.prm";
+  const Outcome outcome = run_program(study(deck, out, three));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const std::string text = "2 of 3 members warn (the first: cell-aspect-ratio-24.1): ";
+  EXPECT_EQ(occurrences(outcome.output, "warning: " + text), 1u) << outcome.output;
+  const nlohmann::json record = record_of(out);
+  ASSERT_EQ(record.at("warnings").size(), 1u);
+  EXPECT_EQ(record.at("warnings").at(0).get<std::string>().find(text), 0u);
+  EXPECT_FALSE(record.at("members").at(0).contains("warnings"));
+  for (const std::size_t k : {1u, 2u})
+    EXPECT_EQ(record.at("members").at(k).at("warnings"),
+              summary_of(out + "/members/" +
+                         record.at("members").at(k).at("name").get<std::string>())
+                  .at("warnings"));
+  const Outcome page = draw_page("report " + out, folder.path("matplotlib"));
+  EXPECT_EQ(page.status, 0) << page.output;
+  EXPECT_NE(contents(out + "/study.html").find("<li>" + text), std::string::npos);
+}
+
 TEST(Study, KeepsItsMembersWhenTheChoiceChanges)
 {
   const TemporaryFolder folder;
