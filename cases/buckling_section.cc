@@ -1,5 +1,6 @@
 #include "cases/buckling_section.h"
 
+#include "cases/mechanism.h"
 #include "cases/mesh_strips.h"
 #include "cases/section_foundation.h"
 #include "cases/section_materials.h"
@@ -64,6 +65,8 @@ BucklingSection::write_fields(const std::string &directory) const
 
 std::vector<std::string> BucklingSection::doubts() const
 {
+  if (const std::string doubt = doubt_of_columns(p_, geometry_); !doubt.empty())
+    return {doubt};
   const unsigned int n = modes_.front().half_waves;
   const double columns = geometry_.n_columns();
   if (p_.matrix.refinement_rounds > 0 || (n > 0 && columns >= 6. * n))

@@ -1,26 +1,14 @@
 // The rock that a calibration has found, as an include of decks, and its table.
 #include "cases/calibrate.h"
 #include "cases/declarations.h"
+#include "cases/formatted.h"
 
-#include <cstdarg>
-#include <cstdio>
 #include <sstream>
 
 namespace antiform::cases
 {
 namespace
 {
-std::string formatted(const char *format, ...) __attribute__((format(printf, 1, 2)));
-std::string formatted(const char *format, ...)
-{
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 /// The section Layer in the form of a deck, with only what makes the rock.
 class Entries
 {
