@@ -1,6 +1,7 @@
 #include "cases/fracture_list.h"
 
 #include "cases/deck_reader.h"
+#include "discrete/packing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -244,6 +245,38 @@ void check_sets(const Parameters &p, std::vector<Finding> &findings)
 }
 } // namespace
 
+namespace
+{
+std::vector<Vec2> section_outline(const SectionGeometry &geometry)
+{
+  return {{geometry.x_min(), geometry.base()},
+          {geometry.x_max(), geometry.base()},
+          {geometry.x_max(), geometry.surface()},
+          {geometry.x_min(), geometry.surface()}};
+}
+
+/// Where the sets lie.
+std::vector<Vec2> region_of_sets(const Parameters &p, const SectionGeometry &geometry)
+{
+  return p.fractures.region == "section" ? section_outline(geometry)
+                                         : geometry.layer_outline();
+}
+
+FractureTraces traces_inside(const std::vector<Vec2> &polygon,
+                             const std::vector<Fracture> &fractures)
+{
+  FractureTraces traces;
+  for (const Fracture &one : fractures)
+    if (const double inside = length_inside(polygon, one.begin, one.end); inside > 0.)
+    {
+      ++traces.number;
+      traces.length += inside;
+    }
+  traces.intensity = traces.length / area(polygon);
+  return traces;
+}
+} // namespace
+
 std::vector<Fracture> make_fractures(const Parameters &p, const SectionGeometry &geometry)
 {
   const FracturesParameters &f = p.fractures;
@@ -253,12 +286,7 @@ std::vector<Fracture> make_fractures(const Parameters &p, const SectionGeometry 
   if (!f.table.empty())
     for (const Fracture &one : read_fracture_table(f.table, f.law, problems))
       fractures.push_back(one);
-  std::vector<Vec2> region = geometry.layer_outline();
-  if (f.region == "section")
-    region = {{geometry.x_min(), geometry.base()},
-              {geometry.x_max(), geometry.base()},
-              {geometry.x_max(), geometry.surface()},
-              {geometry.x_min(), geometry.surface()}};
+  const std::vector<Vec2> region = region_of_sets(p, geometry);
   for (std::size_t k = 0; k < f.intensity.size(); ++k)
     try
     {
@@ -277,6 +305,12 @@ std::vector<Fracture> make_fractures(const Parameters &p, const SectionGeometry 
          parallel_fractures(region, parallel_set(f, k, geometry.thickness())))
       fractures.push_back(one);
   return fractures;
+}
+
+FractureTraces traces_in_layer(const std::vector<Fracture> &fractures,
+                               const SectionGeometry &geometry)
+{
+  return traces_inside(geometry.layer_outline(), fractures);
 }
 
 void check_fractures(const Parameters &p, std::vector<Finding> &findings)
@@ -323,11 +357,80 @@ void check_fractures(const Parameters &p, std::vector<Finding> &findings)
   check_sets(p, findings);
 }
 
+namespace
+{
+/// Width of @p polygon across the traces of a set [m].
+double width_across(const std::vector<Vec2> &polygon, const double orientation)
+{
+  const Vec2 across{-std::sin(orientation), std::cos(orientation)};
+  double least = HUGE_VAL, greatest = -HUGE_VAL;
+  for (const Vec2 &point : polygon)
+  {
+    least = std::min(least, dot(point, across));
+    greatest = std::max(greatest, dot(point, across));
+  }
+  return greatest - least;
+}
+
+/// Sets so far apart that none of their traces lies in the region.
+void check_empty_sets(const Parameters &p,
+                      const SectionGeometry &geometry,
+                      std::vector<Finding> &findings)
+{
+  const std::vector<Vec2> region = region_of_sets(p, geometry);
+  for (std::size_t k = 0; k < p.fractures.spacing_ratio.size(); ++k)
+  {
+    const ParallelSet set = parallel_set(p.fractures, k, geometry.thickness());
+    if (!parallel_fractures(region, set).empty())
+      continue;
+    const double width = width_across(region, set.orientation) / geometry.thickness();
+    findings.push_back(
+        {{"Fractures/Spacing ratio", "Fractures/Phase", "Fractures/Orientation"},
+         "a spacing of " + short_text(p.fractures.spacing_ratio[k]) +
+             " h leaves no fracture in the " + p.fractures.region + ", which is " +
+             short_text(width) +
+             " h wide across the traces. Give less than that, or another phase."});
+  }
+}
+
+/// Fractures that all lie beside the grains that they were to part.
+void check_missing_traces(const Parameters &p,
+                          const SectionGeometry &geometry,
+                          const std::vector<Fracture> &fractures,
+                          std::vector<Finding> &findings)
+{
+  const FracturesParameters &f = p.fractures;
+  const bool has_matrix_grains = p.has("matrix") && !p.has_surface_interface();
+  const FractureTraces traces = traces_inside(
+      has_matrix_grains ? section_outline(geometry) : geometry.layer_outline(),
+      fractures);
+  if (traces.length >= geometry.diameter())
+    return;
+  const std::string entry = !f.list.empty()        ? "List"
+                            : !f.table.empty()     ? "Table"
+                            : !f.intensity.empty() ? "Intensity"
+                                                   : "Spacing ratio";
+  findings.push_back(
+      {{"Fractures/" + entry},
+       "there are " + short_text(traces.length) +
+           " m of traces in the grains, and a grain measures " +
+           short_text(geometry.diameter()) +
+           " m: nothing would be parted. Give fractures in the layer, x = " +
+           short_text(geometry.x_min()) + " to " + short_text(geometry.x_max()) +
+           " m and y = " + short_text(geometry.layer_bottom(geometry.x_min())) + " to " +
+           short_text(geometry.layer_top(0.)) + " m, or leave fractures out."});
+}
+} // namespace
+
 void check_drawn_fractures(const Parameters &p, std::vector<Finding> &findings)
 {
   try
   {
-    make_fractures(p, SectionGeometry(p));
+    const SectionGeometry geometry(p);
+    const std::vector<Fracture> fractures = make_fractures(p, geometry);
+    check_empty_sets(p, geometry, findings);
+    if (findings.empty())
+      check_missing_traces(p, geometry, fractures, findings);
   }
   catch (const InputError &error)
   {

@@ -23,8 +23,18 @@ std::vector<discrete::Fracture> read_fracture_table(const std::string &file,
 std::vector<discrete::Fracture> make_fractures(const Parameters &parameters,
                                                const SectionGeometry &geometry);
 
+/// What of fractures lies in a part of the section.
+struct FractureTraces
+{
+  std::size_t number = 0; ///< fractures with a trace there
+  double length = 0.;     ///< of their traces there [m]
+  double intensity = 0.;  ///< P21 there, length per area [1/m]
+};
+FractureTraces traces_in_layer(const std::vector<discrete::Fracture> &fractures,
+                               const SectionGeometry &geometry);
+
 /// What is wrong with the fractures of a deck, before anything is built.
 void check_fractures(const Parameters &parameters, std::vector<Finding> &findings);
-/// Whether the network can be drawn. \pre nothing else is wrong
+/// Whether the network can be drawn and parts any grains. \pre nothing else is wrong
 void check_drawn_fractures(const Parameters &parameters, std::vector<Finding> &findings);
 } // namespace antiform::cases

@@ -1,7 +1,7 @@
 #include "cases/fracture_record.h"
 
+#include "cases/fracture_list.h"
 #include "coupling/output/vtu.h"
-#include "discrete/packing.h"
 
 #include <algorithm>
 #include <array>
@@ -16,13 +16,9 @@ void report_fractures(const Scene &scene, Summary &summary)
   if (!scene.grains || !scene.grains->smooth)
     return;
   const discrete::SmoothJoints &smooth = *scene.grains->smooth;
-  const std::vector<Vec2> layer = scene.geometry.layer_outline();
   const std::size_t n_fractures =
       smooth.fractures.size() - scene.grains->n_bedding_traces;
-  double traces = 0., farthest = 0., widest = 0., joints = 0.;
-  for (std::size_t f = 0; f < n_fractures; ++f)
-    traces += discrete::length_inside(layer, smooth.fractures[f].begin,
-                                      smooth.fractures[f].end);
+  double farthest = 0., widest = 0., joints = 0.;
   for (const SmoothContact &c : smooth.contacts)
   {
     farthest = std::max(farthest, std::abs(c.slip));
@@ -33,7 +29,11 @@ void report_fractures(const Scene &scene, Summary &summary)
   if (scene.parameters.has("fractures"))
   {
     results["fractures"] = {static_cast<double>(n_fractures), "-"};
-    results["fracture_intensity"] = {traces / discrete::area(layer), "1/m"};
+    const std::vector<discrete::Fracture> of_deck(
+        smooth.fractures.begin(),
+        smooth.fractures.begin() + static_cast<std::ptrdiff_t>(n_fractures));
+    results["fracture_intensity"] = {traces_in_layer(of_deck, scene.geometry).intensity,
+                                     "1/m"};
   }
   results["smooth_joints"] = {joints, "-"};
   results["largest_fracture_slip"] = {farthest, "m"};

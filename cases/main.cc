@@ -67,10 +67,9 @@ int run_deck(RunOptions options, MPI_Comm communicator)
 
 int check_deck(const CommandLine &line)
 {
-  const Parameters parameters =
-      read_deck(line.run.deck, has_study(line.run.deck, line.run.overrides)
-                                   ? overrides_of_scene(line.run.overrides)
-                                   : line.run.overrides);
+  if (has_study(line.run.deck, line.run.overrides))
+    return check_study(line.run, line.json, std::cout);
+  const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
   return parameters.has("calibration")
              ? check_cost_of_calibration(parameters, line.json, std::cout)
              : check(parameters, line.run, line.json, std::cout);

@@ -29,12 +29,15 @@ void demand_one_rank_of_grains(const Parameters &parameters, MPI_Comm communicat
 /// Collective.
 int run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator);
 
-/// Print the composed scene, its effects and why, sizes, predicted time and memory; of a
-/// deck with a study what all its members take. Builds no packing. Returns the exit
-/// status. For one rank.
+/// Print the composed scene, its effects and why, sizes, predicted time and memory. Builds
+/// no packing. Returns the exit status. For one rank.
 /// \param options deck, overrides and threads
 int check(const Parameters &parameters,
           const RunOptions &options,
           bool json,
           std::ostream &out);
+
+/// The same of a deck with a study: first what the study runs and what its members take,
+/// then the scene that they change. Throws InputError.
+int check_study(const RunOptions &options, bool json, std::ostream &out);
 } // namespace antiform::cases

@@ -5,6 +5,7 @@
 #include "cases/interrupt.h"
 #include "cases/output_directory.h"
 #include "cases/run_log.h"
+#include "cases/study_prediction.h"
 #include "cases/study_tables.h"
 #include "coupling/output/whole_file.h"
 
@@ -16,7 +17,6 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <thread>
 
 namespace antiform::cases
 {
@@ -96,15 +96,6 @@ std::vector<std::string> changes_of_choice(const std::set<std::string> &former,
   return lines;
 }
 
-/// Of all members, had none been run [s].
-double predicted_seconds(const std::vector<MemberDeck> &decks, const int jobs)
-{
-  double sum = 0.;
-  for (const MemberDeck &deck : decks)
-    sum += deck.core_seconds;
-  return sum / std::min(jobs, static_cast<int>(decks.size()));
-}
-
 std::string end_in_words(const StudyMembers &members, const double seconds)
 {
   const auto said = [&](const std::string &status, const std::string &what)
@@ -135,7 +126,7 @@ int run_study(const RunOptions &given, const int jobs_wanted)
   demand_same_decks(options.output, decks);
   const std::set<std::string> former = former_members(options.output);
 
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int cores = cores_of_machine();
   const int jobs = jobs_wanted > 0 ? jobs_wanted : cores;
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&]

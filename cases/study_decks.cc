@@ -91,6 +91,16 @@ std::map<std::string, Result> theory_figures(const Parameters &p)
   return figures;
 }
 
+/// Overrides of a member: those of the command line, and its values.
+std::vector<std::string> with_values(std::vector<std::string> overrides,
+                                     const std::vector<std::string> &paths,
+                                     const StudyMember &member)
+{
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    overrides.push_back(paths[i] + "=" + member.values[i]);
+  return overrides;
+}
+
 MemberDeck
 member_deck(const StudyMember &member, const Parameters &p, MachineSpeed &speed)
 {
@@ -153,12 +163,9 @@ std::vector<MemberDeck> read_members(const std::string &file,
   std::map<std::string, std::string> first_with; // deck -> member
   for (const StudyMember &member : members)
   {
-    std::vector<std::string> all = of_scene;
-    for (std::size_t i = 0; i < paths.size(); ++i)
-      all.push_back(paths[i] + "=" + member.values[i]);
     try
     {
-      Parameters p = read_deck(file, all);
+      Parameters p = read_deck(file, with_values(of_scene, paths, member));
       demand_calibration(p, false);
       const auto [same, is_new] = first_with.emplace(RunDeck(p).everything, member.name);
       if (!is_new)
@@ -182,6 +189,32 @@ std::vector<MemberDeck> read_members(const std::string &file,
   if (!problems.empty())
     throw InputError(problems.in_words(members.size()));
   return decks;
+}
+
+double predicted_seconds(const std::vector<MemberDeck> &members, const int jobs)
+{
+  double sum = 0.;
+  for (const MemberDeck &deck : members)
+    sum += deck.core_seconds;
+  return sum / std::min(jobs, static_cast<int>(members.size()));
+}
+
+StudyBase read_base(const std::string &file,
+                    const std::vector<std::string> &overrides,
+                    const StudyParameters &study)
+{
+  const std::vector<std::string> of_scene = overrides_of_scene(overrides);
+  try
+  {
+    return {read_deck(file, of_scene), ""};
+  }
+  catch (const InputError &)
+  {
+    std::vector<std::string> ignored; // read_study() has found none
+    const std::vector<StudyAxis> axes = read_axes(study.vary, ignored);
+    const StudyMember first = members_of(axes).front();
+    return {read_deck(file, with_values(of_scene, paths_of(axes), first)), first.name};
+  }
 }
 
 std::string deck_of_study(const std::string &file,

@@ -38,6 +38,19 @@ std::vector<MemberDeck> read_members(const std::string &file,
                                      const StudyParameters &study,
                                      MachineSpeed &speed);
 
+/// Of all members, had none been run, @p jobs of them at once [s].
+double predicted_seconds(const std::vector<MemberDeck> &members, int jobs);
+
+/// The scene that the members of a study change.
+struct StudyBase
+{
+  Parameters scene;
+  std::string member; ///< the first one, where the deck without its values is no scene
+};
+StudyBase read_base(const std::string &file,
+                    const std::vector<std::string> &overrides,
+                    const StudyParameters &study);
+
 /// The deck of the study itself, by which it can be repeated; empty when the scene is
 /// none without the values of a member.
 std::string deck_of_study(const std::string &file,
