@@ -28,8 +28,8 @@ struct DriverSettings
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
   /// Likewise of a part of a move: longer ones are made and booked in parts.
-  double part_length = 2.;
-  double most_parts = 20.; ///< [-]
+  double part_length = 0.25;
+  double most_parts = 400.; ///< [-]
 
   LocalSettings local; ///< of bodies that are grains alone
   /// While bonds of parts that were balanced apart still break, the whole may be that

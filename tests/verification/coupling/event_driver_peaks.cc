@@ -69,20 +69,20 @@ void expect_same_mean(const std::function<double(std::uint64_t)> &one,
 } // namespace
 
 // Slow loading under local damping: under the combined form cracks run on more often. The
-// peak of one specimen is chaotic: 9 % between drivers at 900 grains in the method's own
-// prototype, and sqrt(900 / 296) of that here.
+// peak of one specimen is chaotic: 8 % are allowed it, and where a break counts for more, of
+// 296 grains, 10 %.
 TEST(EventDriverPeaks, AreThoseOfSlowLoadingInTheMeanOfSmallSpecimensLong)
 {
   expect_same_mean([](const std::uint64_t seed) { return driver_peak(12., seed); },
                    [](const std::uint64_t seed) { return slow_peak(12., seed, 0.0026); },
-                   0.16, 0.025);
+                   0.1, 0.025);
 }
 
 TEST(EventDriverPeaks, AreThoseOfSlowLoadingInUniaxialCompressionLong)
 {
   expect_same_mean([](const std::uint64_t seed) { return driver_peak(22., seed); },
                    [](const std::uint64_t seed) { return slow_peak(22., seed, 0.0022); },
-                   0.1, 0.025);
+                   0.08, 0.025);
 }
 
 // 10 MPa on a mean diameter of side.
@@ -91,7 +91,7 @@ TEST(EventDriverPeaks, AreThoseOfSlowLoadingUnderConfinementLong)
   expect_same_mean([](const std::uint64_t seed) { return driver_peak(22., seed, 10e6); },
                    [](const std::uint64_t seed)
                    { return slow_peak(22., seed, 0.004, 10e6); },
-                   0.1, 0.025);
+                   0.08, 0.025);
 }
 
 namespace
@@ -226,12 +226,14 @@ TEST(EventDriverPeaks, IntactAndInLineFactorsFindTheSameMeanLong)
       0.1, 0.02);
 }
 
-// The ascent of a large specimen, by the threshold of the method's own prototype: 3000
-// solves, the limit of corrections met once at most, the peak within 5 % of that of slow
-// loading.
-TEST(EventDriverPeaks, FifteenThousandGrainsTakeFewSolvesLong)
+namespace
 {
-  Specimen one(84.6, 1), other(84.6, 1);
+/// The ascent of a specimen of 15 000 grains, by the thresholds of the method's own
+/// prototype: 3000 solves, the limit of corrections met once at most, the peak within 5 %
+/// of that of slow loading.
+void expect_few_solves(const std::uint64_t seed)
+{
+  Specimen one(84.6, seed), other(84.6, seed);
   ASSERT_GT(one.n_grains(), 14900U);
   GrainBalance body(one.state, one.platens);
   EventDriver driver(body, {});
@@ -256,9 +258,20 @@ TEST(EventDriverPeaks, FifteenThousandGrainsTakeFewSolvesLong)
   EXPECT_LT(at_peak.solves, 3000);
   EXPECT_GT(at_peak.breaks, 10000);
   EXPECT_LE(at_peak.hand_overs, 1);
+  const double end = driver.report().records.back().load;
   const double slow =
-      slow_loading(other, 500., driver.report().records.back().load, 0.03).peak;
+      slow_loading(other, 1000., end, 0.03, {}, {}, local_damping()).peak;
   std::printf("peak %.2f MPa, slow %.2f MPa\n", 1e-6 * one.stress(peak), 1e-6 * slow);
   EXPECT_NEAR(one.stress(peak) / slow, 1., 0.05);
+}
+} // namespace
+
+TEST(EventDriverPeaks, FifteenThousandGrainsTakeFewSolvesLong)
+{
+  expect_few_solves(1);
+}
+TEST(EventDriverPeaks, AnotherFifteenThousandGrainsTakeFewSolvesLong)
+{
+  expect_few_solves(2);
 }
 } // namespace antiform::coupling::test::event_driver_peaks_tests
