@@ -30,10 +30,11 @@ void add_output(CLI::App &command, RunOptions &run)
       ->type_name("DIR");
 }
 
-void add_threads(CLI::App &command, RunOptions &run)
+void add_threads(CLI::App &command,
+                 RunOptions &run,
+                 const std::string &what = "threads of each rank (OMP_NUM_THREADS)")
 {
-  command
-      .add_option("--threads", run.threads, "threads of each rank (OMP_NUM_THREADS)")
+  command.add_option("--threads", run.threads, what)
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
 }
@@ -91,6 +92,7 @@ void add_study(CLI::App &app, CommandLine &line)
   command.add_option("--jobs", line.jobs, "members at once (as many as cores)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+  add_threads(command, line.run, "threads of each member (cores that --jobs leaves free)");
   command.footer(
       "Example:\n  antiform study cases/burial-depth/study.prm -o depths\n"
       "  antiform report depths\n"

@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <omp.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -127,7 +129,11 @@ int run_study(const RunOptions &given, const int jobs_wanted)
   const std::set<std::string> former = former_members(options.output);
 
   const int cores = cores_of_machine();
-  const int jobs = jobs_wanted > 0 ? jobs_wanted : cores;
+  const int jobs = jobs_wanted > 0 ? jobs_wanted
+                                   : std::max(1, cores / std::max(1, options.threads));
+  const int threads = options.threads > 0
+                          ? options.threads
+                          : std::max(1, std::min(cores, omp_get_max_threads()) / jobs);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&]
   {
@@ -156,7 +162,7 @@ int run_study(const RunOptions &given, const int jobs_wanted)
                            table.json(members, title, status, elapsed()));
   };
   StudyMembers members(
-      options.output, decks, jobs, std::max(1, cores / jobs),
+      options.output, decks, jobs, threads,
       [&](const std::string &text) { log.line(text); },
       [&](const StudyMembers &changed) { write(changed, "running"); });
   const bool went_through = members.run();
