@@ -2,6 +2,7 @@
 #include "cases/formatted.h"
 #include "cases/fracture_list.h"
 #include "cases/geometry.h"
+#include "cases/idle_entries.h"
 #include "cases/mechanism.h"
 #include "cases/predicted_cost.h"
 #include "cases/program.h"
@@ -13,6 +14,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
@@ -135,30 +137,37 @@ void print_mechanism(const Parameters &p, const Mechanism &e, std::ostream &out)
                    "matrix %.3f, %.3f)\n",
                    e.pinned, e.guided, e.bare_pinned, e.bare_guided);
   if (e.crushes_first)
-    out << "  warning: the layer is expected to crush before it folds (gamma above 1.5 "
-           "with guided ends). Raise 'Layer/"
+    out << "  so the layer is expected to crush before it folds much (gamma above 1.5 with "
+           "guided ends);\n  for folds that grow raise 'Layer/"
         << (p.layer.length_ratio > 0. ? "Length ratio" : "Slenderness ratio") << "'"
-        << (p.has("matrix") ? " or 'Matrix/Stiffness contrast'" : "") << ".\n";
+        << (p.has("matrix") ? " or 'Matrix/Stiffness contrast'" : "") << '\n';
   else if (e.guided > 1. && p.layer.shape != "straight")
     out << "  the bare estimate with guided ends is above gamma = 1: bent beforehand, "
            "the "
            "layer folds and breaks at once\n";
 }
 
-void print_cost(const Prediction &prediction, std::ostream &out)
+std::string work_in_words(const PredictedCourse &course)
+{
+  if (course.steps > 1.)
+    return formatted("%.2g steps", course.steps);
+  const double solves = std::max(1., course.solves);
+  return formatted("%.0f %s", solves, solves > 1. ? "solves" : "solve");
+}
+
+void print_cost(const Prediction &prediction, const std::string &of, std::ostream &out)
 {
   const Sizes &sizes = prediction.sizes;
   const PredictedCost &cost = prediction.cost;
   const double seconds = cost.core_seconds(), shortening = cost.course.shortening;
-  out << "\nSize and cost (predicted)\n"
+  out << "\nSize and cost" << of << " (predicted)\n"
       << formatted("  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f "
                    "dofs\n",
                    sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells, sizes.dofs)
-      << formatted("  about %.2g steps%s, %s of one core, %.2f GB\n", cost.course.steps,
-                   shortening > 0.
-                       ? formatted(" to a shortening of %.2e", shortening).c_str()
-                       : "",
-                   duration_text(seconds).c_str(), 1e-9 * cost.memory);
+      << "  about " << work_in_words(cost.course)
+      << (shortening > 0. ? formatted(" to a shortening of %.2e", shortening) : "")
+      << formatted(", %s of one core, %.2f GB\n", duration_text(seconds).c_str(),
+                   1e-9 * cost.memory);
   if (prediction.threads > 1)
     out << formatted("  %s on %d threads with a free core each\n",
                      duration_text(cost.wall_seconds()).c_str(), prediction.threads);
@@ -174,6 +183,8 @@ void print_cost(const Prediction &prediction, std::ostream &out)
 void print_check(const Parameters &p,
                  const SectionGeometry &g,
                  const Prediction &prediction,
+                 const std::vector<std::string> &idle,
+                 const std::string &of,
                  std::ostream &out)
 {
   out << p.title << "\n\nScene\n";
@@ -191,11 +202,15 @@ void print_check(const Parameters &p,
     out << '\n';
   for (const std::string &text : accuracy_in_words(p.accuracy))
     out << text << '\n';
+  if (!idle.empty())
+    out << "\nWithout effect in this scene\n";
+  for (const std::string &text : idle)
+    out << "  " << text << '\n';
   out << "\nEffects\n";
   for (const Effect &effect : list_effects(p))
     out << formatted("  %-21s %-12s %s\n", effect.name.c_str(),
                      state_name(effect.state).c_str(), effect.reason.c_str());
-  print_cost(prediction, out);
+  print_cost(prediction, of, out);
 }
 } // namespace
 
@@ -207,10 +222,15 @@ int check(const Parameters &p,
   const SectionGeometry g(p);
   MachineSpeed speed;
   const Prediction prediction(p, g, options.threads, speed);
+  const std::vector<std::string> idle = idle_lines(options.deck, options.overrides, p);
   if (json)
-    out << to_json(p, g, prediction).dump(2) << '\n';
+  {
+    Json all = to_json(p, g, prediction);
+    all["without_effect"] = idle;
+    out << all.dump(2) << '\n';
+  }
   else
-    print_check(p, g, prediction, out);
+    print_check(p, g, prediction, idle, "", out);
   return 0;
 }
 
@@ -229,7 +249,10 @@ int check_study(const RunOptions &options, const bool json, std::ostream &out)
     return 0;
   }
   print_study(study, out);
-  print_check(p, g, prediction, out);
+  // Lines of the deck may serve some of the members.
+  print_check(p, g, prediction,
+              idle_lines("", overrides_of_scene(options.overrides), p),
+              study.base.member.empty() ? " of the base deck" : " of the first run", out);
   return 0;
 }
 } // namespace antiform::cases

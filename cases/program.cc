@@ -3,6 +3,7 @@
 
 #include "cases/deck_reader.h"
 #include "cases/event_run.h"
+#include "cases/idle_entries.h"
 #include "cases/join_choice.h"
 #include "cases/output_directory.h"
 #include "cases/run_deck.h"
@@ -76,6 +77,8 @@ int run(const Parameters &parameters,
     log.line("join of layer and matrix: " + join_in_words(parameters));
   for (const std::string &line : accuracy_in_words(parameters.accuracy))
     log.line(line);
+  for (const std::string &line : idle_lines("", options.overrides, parameters))
+    log.line("note: " + line);
 
   if (parameters.run.driver == "static")
     return run_static(parameters, options, log, communicator);

@@ -149,6 +149,8 @@ int run_study(const RunOptions &given, const int jobs_wanted)
            std::to_string(decks.size()) + " members, " + std::to_string(jobs) +
            " at once, predicted to take " +
            duration_text(predicted_seconds(decks, jobs)));
+  for (const std::string &line : varied_in_vain(decks))
+    log.line("note: " + line);
   for (const std::string &line : changes_of_choice(former, decks))
     log.line(line);
   catch_interrupts();

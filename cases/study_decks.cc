@@ -3,6 +3,7 @@
 #include "cases/calibrate.h"
 #include "cases/closed_forms.h"
 #include "cases/deck_reader.h"
+#include "cases/idle_entries.h"
 #include "cases/predicted_cost.h"
 #include "cases/run_deck.h"
 #include "cases/theory.h"
@@ -177,6 +178,10 @@ std::vector<MemberDeck> read_members(const std::string &file,
         p.title += (p.title.empty() ? "" : ": ") + member.label;
       decks.push_back(member_deck(member, p, speed));
       decks.back().scene = scene;
+      const std::vector<IdleEntry> idle = idle_entries(p);
+      for (const std::string &path : paths)
+        if (const std::string reason = why_idle(idle, path); !reason.empty())
+          decks.back().idle[path] = reason;
       if (collects_theory)
         decks.back().theory = theory_figures(p);
     }
@@ -197,6 +202,18 @@ double predicted_seconds(const std::vector<MemberDeck> &members, const int jobs)
   for (const MemberDeck &deck : members)
     sum += deck.core_seconds;
   return sum / std::min(jobs, static_cast<int>(members.size()));
+}
+
+std::vector<std::string> varied_in_vain(const std::vector<MemberDeck> &members)
+{
+  std::vector<std::string> texts;
+  for (const auto &[path, reason] : members.front().idle)
+    if (const std::string &entry = path;
+        std::all_of(members.begin(), members.end(),
+                    [&](const MemberDeck &one) { return one.idle.count(entry) > 0; }))
+      texts.push_back("'Study/Vary' names '" + path + "', which changes nothing in any " +
+                      "run: " + reason);
+  return texts;
 }
 
 StudyBase read_base(const std::string &file,

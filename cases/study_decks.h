@@ -21,6 +21,8 @@ struct MemberDeck
   /// What 'antiform theory' says of its scene, "theory/critical/scene_smooth/wavelength";
   /// empty unless the study collects of it.
   std::map<std::string, Result> theory;
+  /// Entries that the study varies and that change nothing in this member, and why.
+  std::map<std::string, std::string> idle;
 };
 
 /// Those of --set that are not of the section Study.
@@ -40,6 +42,9 @@ std::vector<MemberDeck> read_members(const std::string &file,
 
 /// Of all members, had none been run, @p jobs of them at once [s].
 double predicted_seconds(const std::vector<MemberDeck> &members, int jobs);
+
+/// What the study varies without effect in any member, in words.
+std::vector<std::string> varied_in_vain(const std::vector<MemberDeck> &members);
 
 /// The scene that the members of a study change.
 struct StudyBase

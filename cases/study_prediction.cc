@@ -14,10 +14,11 @@ namespace antiform::cases
 {
 namespace
 {
+constexpr std::size_t most_listed = 7;
+
 std::vector<std::string> at_both_ends(const std::vector<std::string> &values)
 {
-  constexpr std::size_t most = 7;
-  if (values.size() <= most)
+  if (values.size() <= most_listed)
     return values;
   std::vector<std::string> some(values.begin(), values.begin() + 4);
   some.emplace_back("...");
@@ -30,7 +31,7 @@ std::string entry_in_words(const StudyEntry &entry)
 {
   const std::string n = std::to_string(entry.values.size());
   return entry.path + " = " + join(at_both_ends(entry.values)) +
-         (entry.values.size() > 7 ? " (" + n + " values)" : "");
+         (entry.values.size() > most_listed ? " (" + n + " values)" : "");
 }
 
 std::vector<std::string> varied_in_words(const std::vector<StudyAxis> &axes)
@@ -87,8 +88,13 @@ void print_study(const StudyPrediction &prediction, std::ostream &out)
     line(what, text);
     what.clear();
   }
-  line("collected", prediction.study.collect.empty() ? "all results"
-                                                     : join(prediction.study.collect));
+  const std::vector<std::string> &collect = prediction.study.collect;
+  line("collected",
+       collect.empty() ? "all results"
+                       : join(at_both_ends(collect)) +
+                             (collect.size() > most_listed
+                                  ? " (" + std::to_string(collect.size()) + " figures)"
+                                  : ""));
   line("one run", duration_text(least->core_seconds) + " of one core (" +
                       least->member.name + ") to " + duration_text(most->core_seconds) +
                       " (" + most->member.name + ")");
@@ -96,6 +102,8 @@ void print_study(const StudyPrediction &prediction, std::ostream &out)
                        duration_text(predicted_seconds(
                            members, static_cast<int>(at_once))) +
                        " with " + std::to_string(at_once) + " at once (--jobs)");
+  for (const std::string &text : varied_in_vain(members))
+    line("note", text);
   if (prediction.base.member.empty())
     out << "\nThe base deck, which the runs change (alone by 'antiform run'): ";
   else

@@ -248,6 +248,22 @@ TEST(Study, GoesOnWithTheOthersWhenOneFails)
   EXPECT_EQ(ends_of(out), ends);
 }
 
+TEST(Study, GivesItsMembersTheThreadsThatTheUserSays)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> one{"Study/Vary=Run/End shortening = 1e-3"};
+  const auto threads = [&](const std::string &options, const int environment)
+  {
+    const std::string out = folder.path("out" + std::to_string(environment));
+    const Outcome outcome =
+        run_program(study(buried_deck(), out, one, options), 1, environment);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return summary_of(out + "/members/end-shortening-1e-3").at("threads").get<int>();
+  };
+  EXPECT_EQ(threads("--jobs 1", 1), 1); // whatever the cores
+  EXPECT_EQ(threads("--jobs 1 --threads 3", 2), 3);
+}
+
 TEST(Study, TellsOfItsMembersWarnings)
 {
   // Six of the columns of half a wave are enough; three and four are not.
