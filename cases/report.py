@@ -33,6 +33,8 @@ FACTS = (("peak_moment", "peak moment of the walls"), ("rotation_at_peak", "rota
          ("theory_stress", "critical stress, theory"), ("dominant_wavelength", "wavelength"),
          ("first_crack_stress", "stress at the first crack"),
          ("crack_initiation_stress", "crack initiation stress"),
+         ("fractures", "fractures before loading"),
+         ("largest_fracture_slip", "largest slip on a fracture"),
          ("cracks_tensile", "cracks in tension"), ("cracks_shear", "cracks in shear"),
          ("fold_amplitude", "fold amplitude"), ("limb_dip", "limb dip"),
          ("surface_uplift", "uplift of the surface"), ("shortening", "shortening at the end"),
@@ -41,10 +43,14 @@ OF_LAYERS = {"fold_amplitude", "limb_dip", "surface_uplift"}  # specimens have t
 SCENE = ("Components", "Layer/Representation", "Layer/Thickness", "Layer/Grains across",
          "Layer/Length ratio", "Layer/Slenderness ratio", "Layer/Shape",
          "Matrix/Representation", "Matrix/Stiffness contrast", "Matrix/Burial depth ratio",
-         "Matrix/Base depth ratio", "Matrix/Interface", "Matrix/Join", "Run/Driver",
+         "Matrix/Base depth ratio", "Matrix/Interface", "Matrix/Join",
+         "Fractures/Spacing ratio", "Fractures/Intensity", "Fractures/Orientation",
+         "Surface pressure/Pressure", "Servo walls/Pressure", "Membrane/Pressure", "Run/Driver",
          "Walls/Action", "Walls/Loading")
 MODES_DRAWN = 2
-UNITS = {"Layer/Thickness": " m"}
+UNITS = {"Layer/Thickness": " m", "Fractures/Intensity": " /m", "Fractures/Orientation": "°",
+         "Surface pressure/Pressure": " Pa", "Servo walls/Pressure": " Pa",
+         "Membrane/Pressure": " Pa"}
 NAMES = {"onset": "cracks have begun", "peak": "up to the peak", "first": "before shortening",
          "last": "at the end"}
 SECTIONS = (
@@ -75,6 +81,14 @@ def steps_of(run, wanted):
     return {number: ", ".join(names[number]) for number in sorted(names)}
 
 
+def has_say(entry, deck):
+    """Does the deck give @p entry, and is it the one of several that decides?"""
+    by_length = float(deck.get("Layer/Length ratio", 0.)) > 0.
+    if entry in ("Layer/Length ratio", "Layer/Slenderness ratio"):
+        return entry in deck and by_length == (entry == "Layer/Length ratio")
+    return bool(deck.get(entry))
+
+
 def add_head(page, run, deck):
     summary = run.summary
     title = summary.get("title") or os.path.basename(os.path.abspath(run.directory))
@@ -94,14 +108,16 @@ def add_head(page, run, deck):
             f"<li>{html.escape(text)}</li>" for text in summary["warnings"]) + "</ul>")
     results = summary.get("results", {})
     unmeant = OF_LAYERS if "young_modulus" in results else set()
+    if "wall_rotation" in results:  # that is how far the walls have come
+        unmeant = unmeant | {"shortening"}
     facts = [(label, with_unit(name, results[name]["value"], results[name]["unit"]))
              for name, label in FACTS if name in results and name not in unmeant]
     page.add('<dl class="facts">' + "".join(
         f"<div><dt>{html.escape(label)}</dt><dd>{html.escape(value)}</dd></div>"
         for label, value in facts) + "</dl>")
     page.add("<h2>The scene</h2>")
-    page.table(("entry", "value"), [(name, deck[name] + UNITS.get(name, "")) for name in SCENE if name in deck],
-               numbers=False)
+    page.table(("entry", "value"), [(name, deck[name] + UNITS.get(name, ""))
+                                    for name in SCENE if has_say(name, deck)], numbers=False)
     sizes = summary.get("sizes", {})
     page.add("<p>" + ", ".join(f"{n:,} {what}" for what, n in sizes.items() if n) + "</p>")
 

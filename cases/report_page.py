@@ -20,7 +20,10 @@ dl.facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem,
 dl.facts div { border: 1px solid #ddd; border-radius: 4px; padding: .4rem .7rem; }
 dl.facts dt { font-size: .8rem; color: #555; }
 dl.facts dd { margin: 0; font-size: 1.15rem; font-weight: 600; }
-figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; display: block; }
+figure { margin: 1rem 0; overflow-x: auto; }
+figure img { max-width: 100%; height: auto; display: block; }
+@media (max-width: 40rem) { figure > img, figure > svg { min-width: 40rem; }
+  div.pair figure > img { min-width: 0; } }
 figcaption { font-size: .85rem; color: #555; max-width: 55rem; }
 div.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 1rem; }
 div.wide { overflow-x: auto; }

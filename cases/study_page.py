@@ -28,6 +28,7 @@ from report_page import Page, write  # noqa: E402
 
 COLOURS = ["#1f4fa8", "#c0392b", "#2e8b57", "#762a83", "#b35806", "#1b1b1b"]
 MARKERS = "os^Dv*"
+LEAST_SPAN = 0.1  # of an axis of figures over the largest of them
 SCALES = {"Pa": (1e-6, "MPa"), "s": (1., "s")}
 
 
@@ -141,6 +142,11 @@ def draw(study):
             place.set_xscale("log")
         if 0. < heights[0] and heights[1] > 15. * heights[0]:
             place.set_yscale("log")
+        elif heights[1] - heights[0] < LEAST_SPAN * max(map(abs, heights)):
+            # A scatter of some percent is not to fill the panel like a trend.
+            middle = 0.5 * scale * sum(heights)
+            half = 0.55 * LEAST_SPAN * scale * max(map(abs, heights))
+            place.set_ylim(middle - half, middle + half)
         place.set_xlabel(words(study.axis))
         place.set_ylabel(words(what["name"]) + ("" if unit == "-" else f" ({unit})"))
         place.grid(color="#dddddd", linewidth=0.6)
@@ -148,6 +154,9 @@ def draw(study):
     for place in axes.flat[len(panels):]:
         place.set_visible(False)
     handles, labels = axes.flat[0].get_legend_handles_labels()
+    if labels == ["members"]:  # one curve needs no name
+        figure.tight_layout()
+        return figure
     # As many beside each other as the width of the page holds.
     width = 5.2 * columns
     beside = max(1, int(width / (0.09 * max(map(len, labels)) + 0.7)))
@@ -166,11 +175,13 @@ def svg_of(figure):
 
 def add_table(page, study):
     record = study.record
-    figures = [c["column"] for c in record["collect"]]
-    head = [words(e["column"]) for e in record["vary"]] + ["status"] + list(map(words, figures))
+    collect = [(c["column"], c["name"], *SCALES.get(c["unit"], (1., c["unit"])))
+               for c in record["collect"]]
+    head = [words(e["column"]) for e in record["vary"]] + ["status"]
+    head += [words(name) + ("" if unit == "-" else f" ({unit})") for _, name, _, unit in collect]
     rows = [list(member["values"].values()) + [member["status"]]
-            + [f"{member['figures'][c]:.6g}" if c in member["figures"] else ""
-               for c in figures] for member in record["members"]]
+            + [f"{scale * member['figures'][c]:.5g}" if c in member["figures"] else ""
+               for c, _, scale, _ in collect] for member in record["members"]]
     page.table(head, rows, classes=[member["status"] for member in record["members"]])
 
 
