@@ -27,7 +27,7 @@ std::string unit_of_summary(const std::string &name)
     return "s";
   if (ends_in("bytes"))
     return "bytes";
-  return name.compare(0, 7, "energy/") == 0 ? "J" : "-";
+  return name.compare(0, 7, "energy/") == 0 && !ends_in("_error") ? "J" : "-";
 }
 
 void read_figures(const nlohmann::json &summary, RunOutcome &outcome)

@@ -107,7 +107,7 @@ def report(curves, line, directory):
                 f"| {WAYS[way][0]} | {of['p'][k]:g} | {of['peak'][k]:.1f}"
                 f" | {of['peak'][k] - of['p'][k]:.1f} | {text} | {of['tension'][k]:.0f}"
                 f" | {of['shear'][k]:.0f} | {dip}"
-                f" | {float(row['energy_closure_error_J']):.1e}"
+                f" | {float(row['energy_closure_error']):.1e}"
                 f" | {float(row['cpu_seconds']):.0f} |")
     text = "\n".join(lines) + "\n"
     with open(os.path.join(directory, "confinement_grains.md"), "w") as file:

@@ -116,7 +116,7 @@ def report(studies, directory):
             peak, dip = values(of, FIGURES[0]), values(of, FIGURES[2])
             mean = {name: np.mean([float(row[name]) for row in of])
                     for name in ("cracks_tensile", "cracks_shear", "cpu_seconds")}
-            ledger = max(float(row["energy_closure_error_J"]) for row in of)
+            ledger = max(float(row["energy_closure_error"]) for row in of)
             lines.append("| " + " | ".join(f"{k:g}" for k in key) +
                          f" | {len(of)} | {with_range(peak, '{:.1f}')}"
                          f" | {mean['cracks_tensile']:.0f} | {mean['cracks_shear']:.0f}"

@@ -1,11 +1,13 @@
 #include "cases/study_plan.h"
 
 #include "cases/study_tables.h"
+#include "support/files.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
@@ -206,6 +208,20 @@ TEST(StudyTable, NamesColumnsWithTheirUnits)
   EXPECT_EQ(column_name("critical_stress over theory_stress", "-"),
             "critical_stress_over_theory_stress");
   EXPECT_EQ(column_name("grain_density", "kg/m^3"), "grain_density_kg_per_m3");
+}
+
+TEST(StudyTable, TakesFiguresWithUnitsAndWarningsFromASummary)
+{
+  const antiform::test::TemporaryFolder folder;
+  std::ofstream(folder.path("summary.json")) << R"({"status": "failed",
+    "warnings": ["a coarse mesh", "no balance"], "wall_seconds": 2,
+    "energy": {"slip": 3.5, "closure_error": 1e-6}})";
+  const RunOutcome outcome = read_outcome(folder.path(""));
+  EXPECT_EQ(outcome.figures.at("energy/slip").unit, "J");
+  EXPECT_EQ(outcome.figures.at("energy/closure_error").unit, "-");
+  EXPECT_EQ(outcome.figures.at("wall_seconds").unit, "s");
+  EXPECT_EQ(outcome.reason, "no balance");
+  EXPECT_EQ(outcome.warnings, Texts{"a coarse mesh"});
 }
 
 TEST(StudyTable, FindsFiguresAndRatios)

@@ -193,6 +193,7 @@ TEST(Study, StopsAtASignalWithCheckpoints)
 {
   const std::vector<std::string> two = unbreakable(
       {"Run/End shortening=6e-3", "Run/Longest shortening=1e-2",
+       "Walls/Transits per millistrain=60", // longer than a second study takes to begin
        "Output/Checkpoint interval=10", "Study/Vary=Matrix/Stiffness contrast = 20, 25"});
   const TemporaryFolder folder;
   const std::string out = folder.path("out");
