@@ -1,6 +1,6 @@
 #include "cases/buckling_section.h"
 
-#include "cases/mechanism.h"
+#include "cases/deck_doubts.h"
 #include "cases/mesh_strips.h"
 #include "cases/section_foundation.h"
 #include "cases/section_materials.h"
@@ -65,8 +65,8 @@ BucklingSection::write_fields(const std::string &directory) const
 
 std::vector<std::string> BucklingSection::doubts() const
 {
-  if (const std::string doubt = doubt_of_columns(p_, geometry_); !doubt.empty())
-    return {doubt};
+  if (const auto known = doubts_of(p_, geometry_); !known.empty())
+    return known;
   const unsigned int n = modes_.front().half_waves;
   const double columns = geometry_.n_columns();
   if (p_.matrix.refinement_rounds > 0 || (n > 0 && columns >= 6. * n))

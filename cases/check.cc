@@ -1,3 +1,4 @@
+#include "cases/deck_doubts.h"
 #include "cases/effects.h"
 #include "cases/formatted.h"
 #include "cases/fracture_list.h"
@@ -116,9 +117,7 @@ Json to_json(const Parameters &p, const SectionGeometry &g, const Prediction &pr
                          {"trace_length_m", traces.length},
                          {"P21_per_m", traces.intensity}};
   }
-  json["warnings"] = Json::array();
-  if (const std::string doubt = doubt_of_columns(p, g); !doubt.empty())
-    json["warnings"].push_back(doubt);
+  json["warnings"] = doubts_of(p, g);
   json["prediction"] = to_json(prediction);
   if (p.accuracy.percent > 0.)
     json["accuracy"] = Json::parse(accuracy_json(p.accuracy));
@@ -196,8 +195,8 @@ void print_check(const Parameters &p,
     out << "\nMechanism: the closed forms are of one layer, not of a stack of beds\n";
   else if (!p.is_specimen())
     print_mechanism(p, expect_mechanism(p, g), out);
-  if (const std::string doubt = doubt_of_columns(p, g); !doubt.empty())
-    out << "  warning: " << doubt << '\n';
+  for (const std::string &doubt : doubts_of(p, g))
+    out << "\nWarning: " << doubt << '\n';
   if (p.accuracy.percent > 0.)
     out << '\n';
   for (const std::string &text : accuracy_in_words(p.accuracy))

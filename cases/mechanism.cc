@@ -1,8 +1,5 @@
 #include "cases/mechanism.h"
 
-#include "cases/formatted.h"
-
-#include <algorithm>
 #include <cmath>
 
 namespace antiform::cases
@@ -84,28 +81,5 @@ Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g)
   e.guided = buried.buckling_force(full) / crushing;
   e.crushes_first = e.guided > 1.5;
   return e;
-}
-
-std::string doubt_of_columns(const Parameters &p, const SectionGeometry &g)
-{
-  if (p.run.driver != "buckling" || !p.has_layer_mesh() || p.has("beds"))
-    return "";
-  // Refinement makes better what the first mesh shows, and that must show the wave.
-  const bool refined = p.matrix.refinement_rounds > 0;
-  const double fewest = refined ? 4. : 12., wanted = refined ? 8. : 16.;
-  const unsigned int n =
-      std::max(1u, supported_layer(p).critical_mode(g.length()).half_waves);
-  const double columns = 2. * g.n_columns() / n; // a wavelength
-  if (columns >= fewest)
-    return "";
-  const double aspect = p.matrix.cell_aspect * columns / wanted;
-  const std::string remedy =
-      aspect >= 1. ? formatted("Cell aspect ratio' = %.3g", aspect)
-                   : formatted("Cell size ratio' = %.3g and 'Matrix/Cell aspect ratio' = 1",
-                               p.matrix.cell_size * aspect);
-  return formatted("%.3g columns of cells in each wavelength of %.4g m that the closed "
-                   "form expects: too few for a load to trust. Give 'Matrix/%s, for %.0f of "
-                   "them",
-                   columns, 2. * g.length() / n, remedy.c_str(), wanted);
 }
 } // namespace antiform::cases

@@ -3,7 +3,6 @@
 #include "cases/geometry.h"
 #include "continuum/layer_theory.h"
 
-#include <string>
 #include <vector>
 
 namespace antiform::cases
@@ -32,9 +31,4 @@ std::vector<continuum::theory::Side> matrix_sides(const Parameters &p);
 continuum::theory::SupportedLayer supported_layer(const Parameters &p);
 
 Mechanism expect_mechanism(const Parameters &p, const SectionGeometry &g);
-
-/// Too few columns of cells for the waves in which a layer of finite elements should
-/// buckle by the closed forms, and what to do; empty: enough, or nothing buckles there.
-/// A mesh that cannot show its wave finds another one, at a stress of its own.
-std::string doubt_of_columns(const Parameters &p, const SectionGeometry &g);
 } // namespace antiform::cases

@@ -1,6 +1,7 @@
 #include "cases/stepped_run.h"
 
 #include "cases/circle_record.h"
+#include "cases/deck_doubts.h"
 #include "cases/deck_reader.h"
 #include "cases/interrupt.h"
 #include "cases/layer_packing.h"
@@ -379,6 +380,7 @@ void SteppedRun::finish(const std::string &status)
                                     0, 0.};
   if (scene_)
     describe_scene(summary);
+  summary.warnings = doubts_of(parameters_, SectionGeometry(parameters_));
   if (recorder_ != nullptr)
     recorder_->fill(summary);
   if (rate_estimate_)

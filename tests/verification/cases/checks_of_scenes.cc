@@ -147,4 +147,21 @@ TEST(Check, AndTheRunWarnOfColumnsTooWideForTheWave)
             std::string::npos)
       << run.output;
 }
+
+// Free vibrations of scaled masses: the walls' force swings about its mean.
+TEST(Check, AndTheRunWarnOfAQuasiStaticSectionWithoutDamping)
+{
+  const std::string words = "the quasi-static driver without damping";
+  const std::vector<std::string> undamped =
+      unbreakable({"Components=layer, walls", "Layer/Length ratio=3"});
+  expect_words(check(tiny_deck(), undamped), 0, {"Warning: " + words});
+  const TemporaryFolder folder;
+  const Outcome run = run_tiny(folder.path("run"), set(undamped));
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find("warning: " + words), std::string::npos) << run.output;
+  for (const std::string other : {"Components=layer, walls, damping", "Run/Driver=dynamic"})
+    EXPECT_EQ(check(tiny_deck(), with(undamped, {other})).output.find(words),
+              std::string::npos)
+        << other;
+}
 } // namespace checks_of_scenes_tests
