@@ -88,16 +88,20 @@ COLOURS = ("black", "#1f4fa8", "#d95f02", "#1a9641", "#7b3294", "#a6761d", "#e72
 
 
 def overlaid_curves(groups, path):
-    """Stress or moment, cracks and fold amplitude of many runs: groups of (name, runs), a
-    colour each."""
+    """Stress or moment, cracks where there are any, and fold amplitude of many runs: groups of
+    (name, runs), a colour each; a first one of one run is a wide band, to be seen below others
+    that meet it."""
     first = groups[0][1][0]
+    cracked = any(run.history[name][-1] > 0. for _, runs in groups for run in runs
+                  for name in ("cracks_tensile", "cracks_shear") if name in run.history)
     stress = (("wall_moment_Nm", 1e-6, "wall moment (MN m per metre)") if first.bends()
               else ("axial_stress_Pa", 1e-6, "axial stress (MPa)"))
     kinds = (stress, (("cracks_tensile", "cracks_shear"), 1., "cracks so far"),
              ("fold_amplitude_m", 1., "fold amplitude (m)"))
     kinds = [kind for kind in kinds
              if np.atleast_1d(kind[0])[0] in first.history
-             and not (kind[0] == "fold_amplitude_m" and "gauge_strain_axial" in first.history)]
+             and not (kind[0] == "fold_amplitude_m" and "gauge_strain_axial" in first.history)
+             and (cracked or kind[2] != "cracks so far")]
     figure, panels = plt.subplots(len(kinds), 1, sharex=True, squeeze=False,
                                   figsize=(9., 3.2 * len(kinds)))
     for axes, (names, factor, label) in zip(panels[:, 0], kinds):
@@ -110,7 +114,8 @@ def overlaid_curves(groups, path):
                 sign = run.sign() if names == "axial_stress_Pa" else 1.
                 axes.plot(run.loading().drawn,
                           factor * sign * sum(columns), color=COLOURS[n % len(COLOURS)],
-                          linewidth=1.6 if len(runs) == 1 else 1.,
+                          linewidth=1. if len(runs) > 1 else 1.6 if n > 0 else 4.,
+                          alpha=0.35 if n == 0 and len(runs) == 1 else 1.,
                           linestyle="-" if n < len(COLOURS) else "--",
                           label=group if k == 0 else None)
         axes.set_ylabel(label)
