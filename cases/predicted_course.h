@@ -17,6 +17,9 @@ struct PredictedCourse
   double field_files = 0.;
 };
 
+/// On the sides of the layer: by walls or a membrane, or by the matrix at its depth [Pa].
+double side_pressure(const Parameters &parameters);
+
 /// Strain at which a layer or specimen fails, roughly [-].
 double predict_strain_at_peak(const Parameters &parameters,
                               const SectionGeometry &geometry);

@@ -170,6 +170,27 @@ TEST(Prediction, OfCostHoldsForBucklingOfGrains)
   expect_cost("burial-depth/buckling_grains");
 }
 
+// A matrix whose pressure holds the layer straight while it hardens: to its longest
+// shortening, three times as far as that of a layer which fails early.
+TEST(Prediction, OfCostHoldsForALayerUnderPressure)
+{
+  expect_cost("confinement/quick");
+}
+
+// Under 20 MPa there is no peak. Under 0.1 MPa the faces part from the frictionless
+// matrix, and the layer fails as a bare one does, at 1.7e-3 (cases/confinement).
+TEST(Prediction, OfTheEndKnowsTheMatrixUnderPressure)
+{
+  const std::string deck = "confinement/layer", pressure = "Surface pressure/Pressure=";
+  const auto end = [&](const std::vector<std::string> &entries)
+  { return number(check(scene(deck, entries)), "prediction", "shortening_at_end"); };
+  EXPECT_DOUBLE_EQ(end({pressure + "20e6"}), 6e-3); // 'Longest shortening'
+  expect_within_half(end({pressure + "0.1e6"}) / 1.7e-3);
+  // Glued, or pressed on, the matrix takes a part of the bending: later than that.
+  EXPECT_GT(end({pressure + "0.1e6", "Matrix/Interface=cemented"}),
+            1.2 * end({pressure + "0.1e6"}));
+}
+
 // Events up to a shortening below the peak.
 TEST(Prediction, OfCostHoldsForEvents)
 {
@@ -225,7 +246,8 @@ TEST(Prediction, OfCostHoldsForEveryDeckOfMinutesLong)
   for (const char *deck :
        {"burial-depth/quick", "burial-depth/comparison", "burial-depth/upheaval",
         "comparison/buried", "laboratory/uniaxial", "laboratory/biaxial",
-        "laboratory/membrane", "laboratory/fractured"})
+        "laboratory/membrane", "laboratory/fractured", "confinement/layer",
+        "confinement/membrane"})
     expect_cost(deck);
   for (const char *loading : {"event driver", "step and relax"})
     expect_cost("laboratory/uniaxial", {std::string("Walls/Loading=") + loading});
