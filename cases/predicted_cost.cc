@@ -143,9 +143,8 @@ private:
   /// Of the grains: those of the layer alone, where the matrix may not break [-].
   double share_that_may_break() const
   {
-    return p_.has("matrix") && !p_.matrix.breakable
-               ? sizes_.layer_grains / sizes_.grains
-               : 1.;
+    return p_.has("matrix") && !p_.matrix.breakable ? sizes_.layer_grains / sizes_.grains
+                                                    : 1.;
   }
 
   void add_packing()
@@ -172,10 +171,10 @@ private:
     {
       const double grains = steps * sizes_.grains * grain_step();
       add_threaded("bonds and motion", grains);
-      add_threaded("broken joints",
-                   share_of_broken_joints(p_, cost_.course,
-                                          predict_strain_at_peak(p_, g_)) *
-                       share_that_may_break() * grains);
+      add_threaded(
+          "broken joints",
+          share_of_broken_joints(p_, cost_.course, predict_strain_at_peak(p_, g_)) *
+              share_that_may_break() * grains);
       if (discrete::has_contact_beside(p_.layer.law()))
         add_threaded("contacts", of_contact * grains);
       add_threaded("smooth joints",

@@ -86,8 +86,10 @@ double contact_of_fold(const SectionGeometry &g, const Mechanism &e, const doubl
 /// Share of the load that crushes a straight layer which a bent one carries, by Perry and
 /// Robertson: a force N and its moment, which alone crush at N_0 and N_0 h/4, crush it
 /// together, and the matrix takes its part of the moment.
-double share_of_crushing(const Parameters &p, const SectionGeometry &g,
-                         const Mechanism &e, const double crushing_stress,
+double share_of_crushing(const Parameters &p,
+                         const SectionGeometry &g,
+                         const Mechanism &e,
+                         const double crushing_stress,
                          const double bend)
 {
   const double bare = theory::perry_robertson(1., e.bare_guided, bend);
@@ -156,9 +158,8 @@ double predict_shortening(const Parameters &p, const SectionGeometry &g)
   if (ratio > 0. && side_pressure(p) == 0.)
     // A bare specimen has lost half of its strength at once; the stress of a bent layer
     // falls evenly on the way to the multiple.
-    multiple = std::min(multiple, p.is_specimen()
-                                      ? 1.03
-                                      : 1. + (multiple - 1.) * (1. - ratio));
+    multiple =
+        std::min(multiple, p.is_specimen() ? 1.03 : 1. + (multiple - 1.) * (1. - ratio));
   return std::min(multiple * peak, p.run.longest_shortening);
 }
 
