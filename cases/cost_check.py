@@ -49,11 +49,17 @@ def predict(program, deck, overrides, folder):
     return json.loads(done.stdout)['prediction']
 
 
+def stay_on_one_core():
+    """A study gives each member its share of the cores; of one, it is one thread."""
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
 def seconds_and_bytes(command, folder):
     """Of the processor, and the largest memory, of one program and those it starts."""
     with open(os.path.join(folder, 'out'), 'w', encoding='utf-8') as out:
         process = subprocess.Popen(command, stdout=out, stderr=out,
-                                   env=environment(folder))
+                                   env=environment(folder),
+                                   preexec_fn=stay_on_one_core)
         _, status, usage = os.wait4(process.pid, 0)  # with what a study has started
     status = os.waitstatus_to_exitcode(status)
     if status not in (0, 2):  # 2: a strut loaded beyond its strength ends so
@@ -62,8 +68,13 @@ def seconds_and_bytes(command, folder):
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
+def whole(prediction):
+    """Of all members, where there are some."""
+    return prediction.get('study', prediction)
+
+
 def seconds_of(prediction):
-    return prediction.get('study', prediction)['core_seconds']
+    return whole(prediction)['core_seconds']
 
 
 def row(name, figures):
@@ -103,7 +114,7 @@ def main():
             seconds, memory = seconds_and_bytes(command, folder)
             after = predict(options.program, deck, overrides, folder)
             figures = [(0.5 * (seconds_of(before) + seconds_of(after)), seconds, '%.3g')]
-            figures.append((1e-6 * before['memory_bytes'], 1e-6 * memory, '%.0f'))
+            figures.append((1e-6 * whole(before)['memory_bytes'], 1e-6 * memory, '%.0f'))
             print(row(name, figures), flush=True)
 
 

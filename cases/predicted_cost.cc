@@ -76,8 +76,9 @@ bool breaks(const Parameters &p)
 
 /// Full law of joints that have lost a bond, over the step of the bonded grains of the
 /// layer: through the peak of specimens in compression, confined ones; of layers, under
-/// whatever pressure, the more, the further they go beyond it (0.17, 0.33, 0.37, 0.31 at
-/// 1.2, 1.5, 1.6, 2.3 of its strain); a specimen in tension has few. Measured [-].
+/// whatever pressure, the more, the further they go beyond it (0.17, 0.33, 0.37, 0.8 at
+/// 1.2, 1.5, 1.6, 2 of its strain), and no more than 0.3 where they slide on fractures; a
+/// specimen in tension has few. Measured [-].
 double share_of_broken_joints(const Parameters &p, const PredictedCourse &course,
                               const double strain_at_peak)
 {
@@ -87,7 +88,8 @@ double share_of_broken_joints(const Parameters &p, const PredictedCourse &course
   if (p.walls.steps_and_relaxes())
     return 0.8;
   if (!p.is_specimen())
-    return std::clamp(0.57 * (course.shortening / strain_at_peak - 0.9), 0., 0.35);
+    return std::clamp(0.57 * (course.shortening / strain_at_peak - 0.9), 0.,
+                      p.has("fractures") ? 0.3 : 0.8);
   return side_pressure(p) > 0. && !p.has("fractures") ? 0.55 : 0.3;
 }
 

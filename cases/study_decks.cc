@@ -111,8 +111,9 @@ member_deck(const StudyMember &member, const Parameters &p, MachineSpeed &speed)
   result.checksum = hexadecimal_crc(deck.everything);
   result.text = effective_deck(p);
   const SectionGeometry geometry(p);
-  result.core_seconds =
-      predict_cost(p, geometry, predict_sizes(p, geometry), speed).core_seconds();
+  const PredictedCost cost = predict_cost(p, geometry, predict_sizes(p, geometry), speed);
+  result.core_seconds = cost.core_seconds();
+  result.memory = cost.memory;
   return result;
 }
 } // namespace

@@ -18,6 +18,7 @@ struct MemberDeck
   std::string text;         ///< of its deck
   std::string checksum;     ///< of the deck and the files that it names
   double core_seconds = 0.; ///< predicted
+  double memory = 0.;       ///< predicted [bytes]
   /// What 'antiform theory' says of its scene, "theory/critical/scene_smooth/wavelength";
   /// empty unless the study collects of it.
   std::map<std::string, Result> theory;

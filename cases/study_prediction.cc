@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <thread>
 
@@ -59,6 +60,14 @@ int cores_of_machine()
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+double StudyPrediction::memory() const
+{
+  double most = 0.;
+  for (const MemberDeck &member : members)
+    most = std::max(most, member.memory);
+  return most;
+}
+
 StudyPrediction predict_study(const RunOptions &options, MachineSpeed &speed)
 {
   StudyPrediction prediction;
@@ -101,7 +110,8 @@ void print_study(const StudyPrediction &prediction, std::ostream &out)
   line("all runs", "about " + duration_text(prediction.core_seconds()) + " of one core, " +
                        duration_text(predicted_seconds(
                            members, static_cast<int>(at_once))) +
-                       " with " + std::to_string(at_once) + " at once (--jobs)");
+                       " with " + std::to_string(at_once) + " at once (--jobs), " +
+                       formatted("%.2f GB at most each", 1e-9 * prediction.memory()));
   for (const std::string &text : varied_in_vain(members))
     line("note", text);
   if (prediction.base.member.empty())
@@ -119,6 +129,7 @@ std::string study_json(const StudyPrediction &prediction)
                {"core_seconds", prediction.core_seconds()},
                {"least_core_seconds", least->core_seconds},
                {"most_core_seconds", most->core_seconds},
+               {"memory_bytes", std::llround(prediction.memory())},
                {"vary", Json::object()}};
   for (const StudyAxis &axis : prediction.axes)
     for (const StudyEntry &entry : axis)

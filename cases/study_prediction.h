@@ -18,6 +18,7 @@ struct StudyPrediction
   StudyBase base;
 
   double core_seconds() const { return predicted_seconds(members, 1); }
+  double memory() const; ///< of the member that takes most [bytes]
 };
 
 /// Throws InputError, with the problems of all members.

@@ -210,6 +210,20 @@ TEST(Prediction, OfBucklingSaysWhatOneSolveAndAllMembersTake)
   EXPECT_LT(all.at("core_seconds").get<double>(), 36. * one);
 }
 
+// A study of ever finer meshes needs the memory of its finest. Cells of half a unit are
+// 16 times as many as those of 2, and a dof takes some 2 kB.
+TEST(Prediction, OfAStudysMemoryIsThatOfItsLargestMember)
+{
+  const auto bytes = [](const json &all)
+  { return all.at("memory_bytes").get<double>(); };
+  const std::string deck = "accuracy/elements";
+  const std::string vary = "Study/Vary=Matrix/Cell size ratio = ";
+  const json all = check(scene(deck, {vary + "0.5, 2"})).at("prediction");
+  const json finest = check(scene(deck, {vary + "0.5"})).at("prediction");
+  EXPECT_NEAR(bytes(all.at("study")) / bytes(finest.at("study")), 1., 0.05);
+  EXPECT_GT(bytes(all.at("study")), 1.2 * bytes(all));
+}
+
 TEST(Prediction, NamesItsSharesAndWhatItHasMeasured)
 {
   const json buried = check(scene("comparison/quick") + " --threads 2");
