@@ -13,7 +13,7 @@ namespace antiform::coupling::test
 /// Rows of grains count from the layer's middle, upwards.
 struct LayerShape
 {
-  int half_rows = 2; ///< the layer has 2 half_rows + 1 rows
+  double half_rows = 2.; ///< the layer has 2 half_rows + 1 rows, a whole number
   int cover_rows = 5, base_rows = 60;
   int length = 100; ///< between walls, even
   double contrast = 20.;
@@ -22,7 +22,8 @@ struct LayerShape
   double mesh_modulus_ratio = 1.; ///< of the mesh over its due [-]
 
   static double row() { return 0.5 * std::sqrt(3.); }
-  double thickness() const { return (2. * half_rows + 1.) * row(); }
+  double n_rows() const { return 2. * half_rows + 1.; } ///< of the layer
+  double thickness() const { return n_rows() * row(); }
   double edge() const { return 0.5 * thickness(); }
   double top() const { return (half_rows + cover_rows + 0.5) * row(); } ///< free surface
   double bottom() const { return -(half_rows + base_rows) * row(); }    ///< the support
@@ -120,7 +121,7 @@ public:
     {
       double amplitude = 0.;
       for (std::size_t i = 0; i < g.size(); ++i)
-        if (std::abs(g.reference_y[i]) < 0.4) // of the lattice one row
+        if (std::abs(g.reference_y[i]) < 0.45) // of the lattice one row, or two
           amplitude +=
               mode.shape.uy[i] * std::cos(m * M_PI * g.reference_x[i] / shape_.length);
       squares += amplitude * amplitude;
@@ -139,9 +140,11 @@ private:
 
   void add_lattice()
   {
+    // Of an odd number of rows one is the layer's middle, of an even one none.
+    const double middle = (shape_.half_rows - std::floor(shape_.half_rows)) * shape_.row();
     discrete::Grains lattice = hexagonal_lattice(
-        {0., static_cast<double>(shape_.length), shape_.bottom(), shape_.top()}, {0., 0.},
-        [this](const Vec2 &x) { return holds(x); });
+        {0., static_cast<double>(shape_.length), shape_.bottom(), shape_.top()},
+        {0., middle}, [this](const Vec2 &x) { return holds(x); });
     discrete::Grains &grains = model_.state.grains = std::move(lattice);
     for (std::size_t i = 0; i < grains.size(); ++i)
       grains.region[i] = std::abs(grains.reference_y[i]) < shape_.edge() ? 0 : 1;
