@@ -73,8 +73,8 @@ struct Ending
 } // namespace
 
 // M = 2 E'I theta/L u/tan u. Half of an outer grain has no joint: bending measures the
-// section somewhere between the whole one and one of n - 0.9 grains (docs/validation.md,
-// case 31), whose moment is 21 % less: within 12 % of the mean of both.
+// section somewhere between the whole one and one of n - 0.9 grains (the most that case 31
+// gives, docs/validation.md), whose moment is 21 % less: within 12 % of the mean of both.
 TEST(Bending, OfAPressedLayerHasTheMomentOfABeam)
 {
   const TemporaryFolder folder;
