@@ -5,7 +5,7 @@
 
 The first run is what the others are held against. Runs whose decks differ in seeds alone are
 one row: their mean, and a difference is called more than scatter where it exceeds twice its
-standard error. Writes comparison.html, comparison.csv and comparison.json.
+standard error; two packings of one deck are needed for that. Writes comparison.html, comparison.csv and comparison.json.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from contextlib import redirect_stderr, redirect_stdout
 import pictures
 import matplotlib.pyplot as plt
 import numpy as np
-from comparison_measures import MEASURES, displacement_difference, measures, zone_distance
+from comparison_measures import BETWEEN, MEASURES, measures
 from curves_page import overlaid_curves
 from report_page import Page, counted, write
 from run_files import Run, RunError, read_deck
@@ -142,25 +142,40 @@ def compare(groups):
 
 
 def field_rows(first, group):
-    """Differences that are no differences of numbers: of zones and of fields. Beside them
-    stands what the reference's own runs differ by."""
+    """Differences that are no differences of numbers: of zones and of fields. Scatter is
+    what runs of one deck differ by, the reference's where it has more than one."""
     rows = []
-    for name, unit, between in (("crack_zone_distance", "grain diameters", zone_distance),
-                                ("displacement_difference", "-", displacement_difference)):
-        values = mean_of(between(a, b) for a in first.runs for b in group.runs)
-        own = mean_of(between(a, b) for a, b in itertools.permutations(first.runs, 2))
-        if values is not None:
-            rows.append({"group": group.name, "runs": len(group.runs), "measure": name,
-                         "unit": unit, "value": values, "deviation": None,
-                         "difference": None, "scatter": own,
-                         "verdict": "unknown" if own is None
-                         else f"{own:.3g} among the reference's own"})
+    for measure in BETWEEN:
+        def all_of(pairs):
+            found = [measure.between(a, b) for a, b in pairs]
+            return [value for value in found if value is not None]
+        apart = all_of(itertools.product(first.runs, group.runs))
+        own = [all_of(itertools.permutations(one.runs, 2)) for one in (first, group)]
+        if not apart:
+            continue
+        scattered = own[0] or own[1]
+        rows.append({"group": group.name, "runs": len(group.runs), "measure": measure.name,
+                     "unit": measure.unit, "value": float(np.mean(apart)),
+                     "deviation": None, "difference": None,
+                     "scatter": float(np.mean(scattered)) if scattered else None,
+                     "verdict": verdict(*means_apart(apart, own, (len(first.runs),
+                                                                  len(group.runs))))})
     return rows
 
 
-def mean_of(values):
-    there = [value for value in values if value is not None]
-    return float(np.mean(there)) if there else None
+def means_apart(apart, own, n):
+    """From distances between the runs of two groups of @p n and those within each: how far
+    the groups' means are apart, and the standard error of that (None without any within).
+    Squares add as those of points do: the mean one between is that of the means and
+    (n - 1) / n of each group's variance, which is half of the mean one within."""
+    variances = [np.mean(np.square(d)) / 2. if d else None for d in own]
+    within = sum((k - 1.) / k * v for k, v in zip(n, variances) if v is not None)
+    means = float(np.sqrt(max(0., np.mean(np.square(apart)) - within)))
+    known = [v for v in variances if v is not None]
+    if not known:
+        return means, None
+    a, b = (known[0] if v is None else v for v in variances)
+    return means, float(np.sqrt(a / n[0] + b / n[1]))
 
 
 def percent(x):
@@ -178,16 +193,41 @@ def shown(row):
 
 
 def label_of(name):
-    extra = {"crack_zone_distance": "distance of the crack zones",
-             "displacement_difference": "difference of the displacement fields, RMS"}
-    return next((m.label for m in MEASURES if m.name == name), extra.get(name))
+    return next(m.label for m in MEASURES + BETWEEN if m.name == name)
+
+
+def in_words(row):
+    """The verdict of a row; what is missing for one is said once, not in every row."""
+    return "" if row["verdict"] in (None, "unknown") else row["verdict"]
+
+
+def what_is_missing(groups, rows):
+    """Words and commands where differences cannot be told from scatter; None where they
+    can."""
+    if not any(row["verdict"] == "unknown" for row in rows):
+        return None
+    packed = next((g for g in groups if len(g.values("grains"))), None)
+    if packed is None:
+        return "There are no grains, so nothing scatters with a packing.", []
+    directory = os.path.normpath(packed.runs[0].directory)
+    seed = int(float(packed.deck.get("Layer/Seed", 1))) + 1
+    other = f"{directory}-seed-{seed}"
+    named = [os.path.normpath(run.directory) for group in groups for run in group.runs]
+    named.insert(named.index(directory) + 1, other)
+    return ("Whether a difference is more than the scatter of packings cannot be told: there "
+            "is one packing of each scene. Two "
+            + ("of the reference" if packed is groups[0] else f"of {packed.name}")
+            + " are needed at least:",
+            [f'antiform run {directory}/deck.prm -o {other} --set "Layer/Seed={seed}"',
+             "antiform compare " + " ".join(named)])
 
 
 def add_table(page, groups, rows):
     names = list(dict.fromkeys(row["measure"] for row in rows))
+    can_be_told = any(map(in_words, rows))
     head = ["", groups[0].name + " (reference)"]
     for group in groups[1:]:
-        head += [group.name, "difference", "beside the scatter"]
+        head += [group.name, "difference"] + ["beside the scatter"] * can_be_told
     lines = []
     for name in names:
         line = [label_of(name)]
@@ -196,8 +236,8 @@ def add_table(page, groups, rows):
                        None)
             line.append("" if row is None else shown(row))
             if group is not groups[0]:
-                line += ["" if row is None else percent(row["difference"]),
-                         "" if row is None else row["verdict"] or ""]
+                line += (["" if row is None else percent(row["difference"])]
+                         + ["" if row is None else in_words(row)] * can_be_told)
         lines.append(line)
     page.table(head, lines)
 
@@ -211,10 +251,14 @@ def write_page(path, groups, differing, rows):
         page.add(f"<h1>{html.escape(page.title)}</h1>")
         page.add('<p class="state">' + html.escape(", ".join(
             f"{group.name} ({counted(len(group.runs), 'run')})" for group in groups)) + "</p>")
+        missing = what_is_missing(groups, rows)
+        if missing:
+            page.add(f'<div class="warnings"><p>{html.escape(missing[0])}</p>'
+                     + "".join(f"<pre>{html.escape(line)}</pre>" for line in missing[1])
+                     + "</div>")
         add_table(page, groups, rows)
-        page.add("<p>A difference is more than scatter where it exceeds twice its standard error, "
-                 "which takes runs with other seeds (<code>--set Layer/Seed=2</code>); without "
-                 "them it is unknown.</p>")
+        page.add("<p>A difference is more than scatter where it exceeds twice its standard "
+                 "error. That of zones and fields is the one of the groups' means.</p>")
         page.add("<h2>Curves</h2>")
         overlaid_curves([(group.name, group.runs) for group in groups],
                         page.path("curves.svg"))
@@ -253,9 +297,11 @@ def write_tables(folder, groups, differing, rows):
 
 
 def print_table(rows):
-    for row in rows:
-        print(f"{row['group'][:44]:44s} {label_of(row['measure']):42s} {shown(row):>22s} "
-              f"{percent(row['difference']):>9s}  {row['verdict'] or ''}")
+    for name, of_group in itertools.groupby(rows, key=lambda row: row["group"]):
+        print(name)
+        for row in of_group:
+            print(f"  {label_of(row['measure']):46s} {shown(row):>22s} "
+                  f"{percent(row['difference']):>10s}  {in_words(row)}".rstrip())
 
 
 def main():
@@ -290,6 +336,9 @@ def main():
             page = os.path.join(options.out, "comparison.html")
             write_page(page, groups, differing, rows)
             print_table(rows)
+            missing = what_is_missing(groups, rows)
+            if missing:
+                print("\n".join([missing[0]] + ["  " + line for line in missing[1]]))
             print(page)
     except (RunError, OSError) as error:
         problems.append(str(error))

@@ -216,3 +216,20 @@ def displacement_difference(a, b):
                        "common: are these runs of one scene?")
     own = first[both] - first[both].mean(axis=0)
     return float(np.sqrt(np.sum((other[both] - first[both])**2) / np.sum(own**2)))
+
+
+class Between:
+    """A measure of two runs: how they differ, where no numbers can be subtracted."""
+
+    def __init__(self, name, label, unit, between):
+        self.name, self.label, self.unit, self.between = name, label, unit, between
+
+
+BETWEEN = (
+    Between("crack_zone_distance_at_peak", "distance of the crack zones, up to the peaks",
+            "grain diameters", lambda a, b: zone_distance(a, b, up_to_peaks=True)),
+    Between("crack_zone_distance", "distance of the crack zones, at the end",
+            "grain diameters", zone_distance),
+    Between("displacement_difference", "difference of the displacement fields, RMS", "-",
+            displacement_difference),
+)

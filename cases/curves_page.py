@@ -103,7 +103,7 @@ def overlaid_curves(groups, path):
              and not (kind[0] == "fold_amplitude_m" and "gauge_strain_axial" in first.history)
              and (cracked or kind[2] != "cracks so far")]
     figure, panels = plt.subplots(len(kinds), 1, sharex=True, squeeze=False,
-                                  figsize=(9., 3.2 * len(kinds)))
+                                  figsize=(5.8, 2.4 * len(kinds)))
     for axes, (names, factor, label) in zip(panels[:, 0], kinds):
         for n, (group, runs) in enumerate(groups):
             for k, run in enumerate(runs):
@@ -120,8 +120,9 @@ def overlaid_curves(groups, path):
                           label=group if k == 0 else None)
         axes.set_ylabel(label)
         axes.grid(color="#dddddd", linewidth=0.6)
-    panels[0, 0].legend(frameon=False, fontsize=9, loc="lower center", ncol=2,
-                        bbox_to_anchor=(0.5, 1.))
+    longest = max(len(group) for group, _ in groups)
+    panels[0, 0].legend(frameon=False, fontsize=9, loc="lower center",
+                        ncol=2 if longest < 28 else 1, bbox_to_anchor=(0.45, 1.))
     panels[-1, 0].set_xlabel(first.loading().label)
     figure.tight_layout()
     figure.savefig(path)

@@ -23,28 +23,35 @@ protected:
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
-  /// A copy of the run with another seed in its deck, its stresses @p factor as large and
-  /// its cracks @p shift further along the layer [m].
+  /// A copy of the run with another entry in its deck, its stresses @p factor as large
+  /// and its cracks, or those after the peak alone, @p shift further along the layer [m].
   static std::string altered(const std::string &name,
                              const std::string &entry,
                              const double factor,
-                             const double shift)
+                             const double shift,
+                             const bool late_alone = false)
   {
     const std::string copy = folder_->path(name);
     fs::copy(folder_->path("run"), copy, fs::copy_options::recursive);
     const std::string script = R"(
 import csv, re, sys
-folder, entry, factor, shift = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
+folder, entry = sys.argv[1:3]
+factor, shift, late_alone = map(float, sys.argv[3:6])
 name, value = entry.split('=')
 with open(folder + '/deck.prm') as file: text = file.read()
 text, n = re.subn(r'(set %s *= ).*' % name, r'\g<1>' + value, text, count=1)
 assert n == 1, entry
 with open(folder + '/deck.prm', 'w') as file: file.write(text)
+with open(folder + '/history.csv') as file:
+    peak = max(csv.DictReader(file), key=lambda row: float(row['axial_stress_Pa']))
+begin = float(peak['shortening']) if late_alone else -1.
 for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * factor),
                               ('cracks', 'reference_x_m', lambda x: x + shift)):
     path = f'{folder}/{table}.csv'
     with open(path) as file: rows = list(csv.DictReader(file))
-    for row in rows: row[column] = repr(change(float(row[column])))
+    for row in rows:
+        if table == 'history' or float(row['shortening']) > begin:
+            row[column] = repr(change(float(row[column])))
     with open(path, 'w') as file:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
@@ -54,7 +61,8 @@ for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * facto
     std::ofstream(file) << script;
     const Outcome outcome =
         run_command("/usr/bin/python3 -B " + file + " " + copy + " '" + entry + "' " +
-                    std::to_string(factor) + " " + std::to_string(shift));
+                    std::to_string(factor) + " " + std::to_string(shift) +
+                    (late_alone ? " 1" : " 0"));
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     return copy;
   }
@@ -76,6 +84,38 @@ for table, column, change in (('history', 'axial_stress_Pa', lambda x: x * facto
     return found;
   }
 
+  /// The lines of a table below its names, text by text.
+  static std::vector<std::vector<std::string>> cells(const std::string &path)
+  {
+    std::istringstream lines(contents(path));
+    std::vector<std::vector<std::string>> rows;
+    std::string line;
+    for (std::getline(lines, line); std::getline(lines, line);)
+    {
+      rows.emplace_back();
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');)
+        rows.back().push_back(cell);
+    }
+    return rows;
+  }
+
+  /// Mean diameter of the run's grains [m].
+  static double grain_diameter()
+  {
+    const std::string file = folder_->path("diameter.py");
+    std::ofstream(file) << "import sys\n"
+                           "sys.path.insert(0, sys.argv[1] + '/cases')\n"
+                           "from run_files import Run\n"
+                           "run = Run(sys.argv[2])\n"
+                           "print(2. * run.frame(0).grains.field('radius_m').mean())\n";
+    const Outcome diameter =
+        run_command("/usr/bin/python3 -B " + file + " " ANTIFORM_SOURCE_DIR " " +
+                    folder_->path("run"));
+    EXPECT_EQ(diameter.status, 0) << diameter.output;
+    return std::stod(diameter.output);
+  }
+
   static std::unique_ptr<TemporaryFolder> folder_;
 };
 std::unique_ptr<TemporaryFolder> ComparedRuns::folder_;
@@ -94,29 +134,60 @@ TEST_F(ComparedRuns, FindsKnownDifferencesOfStressAndPlace)
     EXPECT_EQ(measure_of(out, measure).at("difference"), 0.) << measure;
   EXPECT_EQ(measure_of(out, "displacement_difference").at("value"), 0.);
   // All cracks 3 m further: that far, whatever their number.
-  const std::string file = folder_->path("diameter.py");
-  std::ofstream(file) << "import sys\n"
-                         "sys.path.insert(0, sys.argv[1] + '/cases')\n"
-                         "from run_files import Run\n"
-                         "run = Run(sys.argv[2])\n"
-                         "print(2. * run.frame(0).grains.field('radius_m').mean())\n";
-  const Outcome diameter = run_command("/usr/bin/python3 -B " + file +
-                                       " " ANTIFORM_SOURCE_DIR " " + folder_->path("run"));
-  ASSERT_EQ(diameter.status, 0) << diameter.output;
-  EXPECT_NEAR(measure_of(out, "crack_zone_distance").at("value"),
-              3. / std::stod(diameter.output), 1e-6);
+  for (const char *measure : {"crack_zone_distance", "crack_zone_distance_at_peak"})
+    EXPECT_NEAR(measure_of(out, measure).at("value"), 3. / grain_diameter(), 1e-6)
+        << measure;
+  // That there is one packing each is said once, with what to do about it.
+  const std::string html = contents(out + "/comparison.html");
+  for (const std::string &text : {outcome.output, html})
+  {
+    EXPECT_EQ(occurrences(text, "cannot be told"), 1u) << outcome.output;
+    EXPECT_EQ(occurrences(text, "unknown"), 0u) << outcome.output;
+    EXPECT_EQ(occurrences(text, "Layer/Seed="), 1u) << outcome.output;
+    EXPECT_EQ(occurrences(text, "antiform compare "), 1u) << outcome.output;
+  }
   EXPECT_GT(contents(out + "/comparison.html").size(), 50000u);
   EXPECT_EQ(contents(out + "/comparison.html").find("http"), std::string::npos);
 }
 
+TEST_F(ComparedRuns, TellsZonesUpToThePeaksFromThoseAtTheEnd)
+{
+  const std::string out = folder_->path("zones");
+  const std::string late = altered("late", "Transits per millistrain=76", 1., 3., true);
+  const Outcome outcome = compare(folder_->path("run") + " " + late, out);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(measure_of(out, "crack_zone_distance_at_peak").at("value"), 0.);
+  // All that moves moves one way: in the mean by 3 m times the share of those that do.
+  double peak = 0., at_peak = 0.;
+  const CsvTable history(folder_->path("run") + "/history.csv");
+  for (std::size_t k = 0; k < history.size(); ++k)
+    if (const double stress = history.column("axial_stress_Pa")[k]; stress > peak)
+    {
+      peak = stress;
+      at_peak = history.column("shortening")[k];
+    }
+  const std::vector<std::vector<std::string>> cracks = cells(late + "/cracks.csv");
+  std::size_t n_late = 0;
+  for (const std::vector<std::string> &crack : cracks)
+    n_late += std::stod(crack.at(2)) > at_peak ? 1 : 0;
+  ASSERT_GT(n_late, 0u);
+  ASSERT_LT(n_late, cracks.size());
+  // Quantiles between places are interpolated, those at the ends count once.
+  EXPECT_NEAR(measure_of(out, "crack_zone_distance").at("value").get<double>() *
+                  grain_diameter() * cracks.size() / n_late,
+              3., 0.06);
+}
+
 TEST_F(ComparedRuns, TellsScatterOfSeedsFromADifference)
 {
-  // Peaks 1, 1.02 against 1.01, 1.03 and 1.2, 1.22 of the run's.
-  const std::string first = folder_->path("run") + " " +
-                            altered("seed", "Seed=91", 1.02, 0.) + " ";
+  // Peaks 1, 1.02 against 1.01, 1.03 and 1.2, 1.22 of the run's; cracks 0, 1 m further
+  // against 0.5, 1.5 m and 10, 11 m.
+  const std::string first =
+      folder_->path("run") + " " + altered("seed", "Seed=91", 1.02, 1.) + " ";
   const std::string out = folder_->path("scatter");
-  const std::string near = altered("near", "Transits per millistrain=78", 1.01, 0.) + " " +
-                           altered("near_seed", "Transits per millistrain=78", 1.03, 0.);
+  const std::string near = altered("near", "Transits per millistrain=78", 1.01, 0.5) +
+                           " " +
+                           altered("near_seed", "Transits per millistrain=78", 1.03, 1.5);
   // Two runs of one deck and seed are one group too.
   Outcome outcome = compare(first + near, out);
   ASSERT_EQ(outcome.status, 0) << outcome.output;
@@ -126,13 +197,53 @@ TEST_F(ComparedRuns, TellsScatterOfSeedsFromADifference)
   // Variances 2e-4 of two runs each: sqrt(2e-4 / 2 + 2e-4 / 2), over the mean.
   EXPECT_NEAR(peak.at("scatter"), std::sqrt(2e-4) / 1.01, 1e-6);
   EXPECT_EQ(peak.at("verdict"), "within scatter");
+  // Means half a metre apart, standard error sqrt(1/2 / 2 + 1/2 / 2) m.
+  EXPECT_EQ(measure_of(out, "crack_zone_distance").at("verdict"), "within scatter");
+  EXPECT_NEAR(measure_of(out, "crack_zone_distance").at("scatter"), 1. / grain_diameter(),
+              1e-6);
+  EXPECT_EQ(measure_of(out, "displacement_difference").at("verdict"), "within scatter");
+  EXPECT_EQ(outcome.output.find("cannot be told"), std::string::npos) << outcome.output;
 
-  const std::string far = altered("far", "Transits per millistrain=79", 1.20, 0.) + " " +
-                          altered("far_seed", "Transits per millistrain=79", 1.22, 0.);
+  const std::string far = altered("far", "Transits per millistrain=79", 1.20, 10.) + " " +
+                          altered("far_seed", "Transits per millistrain=79", 1.22, 11.);
   outcome = compare(first + far, folder_->path("far_out"));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_EQ(measure_of(folder_->path("far_out"), "peak_stress").at("verdict"),
-            "more than scatter");
+  for (const char *measure : {"peak_stress", "crack_zone_distance"})
+    EXPECT_EQ(measure_of(folder_->path("far_out"), measure).at("verdict"),
+              "more than scatter")
+        << measure;
+}
+
+TEST_F(ComparedRuns, ReducesDistancesToTheMeansOfTheirGroups)
+{
+  // Of points in a plane means and their standard errors are known without distances.
+  const std::string script = R"(
+import itertools, sys
+sys.path.insert(0, sys.argv[1] + '/cases')
+import numpy as np
+from compare import means_apart
+random = np.random.default_rng(1)
+def check(first, other):
+    def all_of(pairs): return [np.hypot(*(b - a)) for a, b in pairs]
+    own = [all_of(itertools.permutations(group, 2)) for group in (first, other)]
+    means, error = means_apart(all_of(itertools.product(first, other)), own,
+                               (len(first), len(other)))
+    assert abs(means - np.hypot(*(first.mean(0) - other.mean(0)))) < 1e-12, means
+    return error
+def variance(group): return group.var(0, ddof=1).sum()
+a, b = random.random((4, 2)), 2. + random.random((3, 2))
+assert abs(check(a, b) - np.sqrt(variance(a) / 4 + variance(b) / 3)) < 1e-12
+# Where one group is a single run the other's scatter serves both.
+assert abs(check(a, b[:1]) - np.sqrt(variance(a) * (1 / 4 + 1))) < 1e-12
+assert abs(check(a[:1], b) - np.sqrt(variance(b) * (1 + 1 / 3))) < 1e-12
+assert check(a[:1], b[:1]) is None
+)";
+  const std::string file = folder_->path("means.py");
+  std::ofstream(file) << script;
+  const Outcome outcome =
+      run_command("MPLCONFIGDIR=" + folder_->path("matplotlib") +
+                  " /usr/bin/python3 -B " + file + " " ANTIFORM_SOURCE_DIR);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
 }
 
 TEST_F(ComparedRuns, MeetsALinearFieldExactlyInGrainsAndCells)
