@@ -13,7 +13,8 @@ h1 { font-size: 1.6rem; line-height: 1.2; margin: .5rem 0; }
 h2 { font-size: 1.2rem; margin: 2rem 0 .5rem; border-bottom: 1px solid #ccc; }
 h3 { font-size: 1rem; margin: 1.2rem 0 .3rem; }
 p.state { margin: .2rem 0 1rem; color: #444; }
-ul.warnings { background: #fff4d6; border-left: 4px solid #e0a800; padding: .6rem 1.6rem; }
+ul.warnings, div.warnings { background: #fff4d6; border-left: 4px solid #e0a800;
+  padding: .6rem 1.6rem; }
 p.failed { background: #fde2e2; border-left: 4px solid #c00; padding: .6rem 1rem; }
 dl.facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr));
   gap: .6rem; margin: 1rem 0; }
@@ -26,6 +27,10 @@ figure img { max-width: 100%; height: auto; display: block; }
   div.pair figure > img { min-width: 0; } }
 figcaption { font-size: .85rem; color: #555; max-width: 55rem; }
 div.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(18rem, 1fr)); gap: 1rem; }
+div.charts { display: grid; gap: .5rem 1.2rem;
+  grid-template-columns: repeat(auto-fit, minmax(min(100%, 25rem), 1fr)); }
+div.charts figure { margin: .5rem 0; } div.charts svg { width: 100%; }
+p.note { font-size: .85rem; color: #555; max-width: 55rem; }
 div.wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .88rem; }
 th, td { text-align: left; padding: .15rem .8rem .15rem 0; border-bottom: 1px solid #eee;
@@ -35,9 +40,17 @@ tr.failed { color: #b2182b; } figure svg { max-width: 100%; height: auto; }
 summary { cursor: pointer; font-weight: 600; margin: 1rem 0 .4rem; }
 pre { font-size: .8rem; overflow-x: auto; background: #f6f6f6; padding: .6rem; }
 @media print { body { max-width: none; font-size: 10pt; padding: 0; }
-  figure, tr, dl.facts div { break-inside: avoid; } h2, h3 { break-after: avoid; } }
+  figure, tr, dl.facts div { break-inside: avoid; } h2, h3 { break-after: avoid; }
+  div.charts { display: block; } div.charts figure { display: inline-block; width: 48%;
+    margin-right: 1%; vertical-align: top; }
+  div.wide, pre { overflow: visible; } pre { white-space: pre-wrap; }
+  table { font-size: 7.5pt; } th, td { padding-right: 6pt; } th { overflow-wrap: break-word; }
+  div.many { page: broad; } div.many table { font-size: 5.5pt; } div.many th, div.many td {
+    padding-right: 3pt; } }
+@page broad { size: A4 landscape; margin: 8mm; }
 """
 
+MANY = 12  # columns that a printed page upright does not hold
 PERCENT = {"strain_at_peak", "shortening", "critical_shortening"}
 
 
@@ -102,8 +115,9 @@ class Page:
         def cell(text):
             is_number = numbers and re.match(r"[-+]?\d", text)
             return f'<td{" class=number" if is_number else ""}>{html.escape(text)}</td>'
-        self.add('<div class="wide"><table><tr>'
-                 + "".join(f"<th>{html.escape(name)}</th>" for name in head) + "</tr>"
+        many = " many" if len(head) > MANY else ""
+        self.add(f'<div class="wide{many}"><table><thead><tr>'
+                 + "".join(f"<th>{html.escape(name)}</th>" for name in head) + "</tr></thead>"
                  + "".join(f'<tr class="{kind}">' + "".join(map(cell, row)) + "</tr>"
                            for kind, row in zip(classes or [""] * len(rows), rows))
                  + "</table></div>")
