@@ -136,8 +136,8 @@ void print_mechanism(const Parameters &p, const Mechanism &e, std::ostream &out)
                    "matrix %.3f, %.3f)\n",
                    e.pinned, e.guided, e.bare_pinned, e.bare_guided);
   if (e.crushes_first)
-    out << "  so the layer is expected to crush before it folds much (gamma above 1.5 with "
-           "guided ends);\n  for folds that grow raise 'Layer/"
+    out << "  so the layer is expected to crush before it folds much (gamma above 1.5 "
+           "with guided ends);\n  for folds that grow raise 'Layer/"
         << (p.layer.length_ratio > 0. ? "Length ratio" : "Slenderness ratio") << "'"
         << (p.has("matrix") ? " or 'Matrix/Stiffness contrast'" : "") << '\n';
   else if (e.guided > 1. && p.layer.shape != "straight")
@@ -162,7 +162,8 @@ void print_cost(const Prediction &prediction, const std::string &of, std::ostrea
   out << "\nSize and cost" << of << " (predicted)\n"
       << formatted("  %.0f grains (%.0f in the layer), %.0f joints, %.0f cells, %.0f "
                    "dofs\n",
-                   sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells, sizes.dofs)
+                   sizes.grains, sizes.layer_grains, sizes.joints, sizes.cells,
+                   sizes.dofs)
       << "  about " << work_in_words(cost.course)
       << (shortening > 0. ? formatted(" to a shortening of %.2e", shortening) : "")
       << formatted(", %s of one core, %.2f GB\n", duration_text(seconds).c_str(),

@@ -55,8 +55,8 @@ void find_of_layer(const Parameters &p, Collector &found)
   found.add(other("flat joint"), {"Flat joint/"}, bonds);
   found.add(other("parallel bond"), {"Parallel bond/"}, bonds);
   found.add(other("contact bond"), {"Contact bond/"}, bonds);
-  found.add(l.types.gapped_fraction == 0., {"Joint types/Gap ratio",
-                                            "Joint types/Gap deviation"},
+  found.add(l.types.gapped_fraction == 0.,
+            {"Joint types/Gap ratio", "Joint types/Gap deviation"},
             "no joints begin with a gap");
 }
 
@@ -71,7 +71,8 @@ void find_of_matrix(const Parameters &p, Collector &found)
     return;
   found.add(m.interface != "frictional", {"Interface friction", "Interface cohesion"},
             "the interface is " + m.interface);
-  found.add(p.has_foundation_under("base"), {"Base"}, "the base stands on the foundation");
+  found.add(p.has_foundation_under("base"), {"Base"},
+            "the base stands on the foundation");
   found.add(!p.joins_grains_and_mesh(), {"Join", "Mesh modulus ratio"},
             "no grains meet finite elements");
   found.add(!p.has_mesh_contact() || p.run.driver != "static",
@@ -111,7 +112,8 @@ void find_of_loads(const Parameters &p, Collector &found)
   found.add(!w.pulls(), {"Grip layers"}, "the walls have no grips");
   found.add(!w.steps_and_relaxes(), {"Relaxation tolerance"},
             "'Walls/Loading' is " + w.loading);
-  found.add(!w.follows_events(), {"Balance tolerance"}, "'Walls/Loading' is " + w.loading);
+  found.add(!w.follows_events(), {"Balance tolerance"},
+            "'Walls/Loading' is " + w.loading);
   found.add(!w.steps_and_relaxes() && !w.follows_events(), {"Load step"},
             "'Walls/Loading' is " + w.loading);
   found.add(!p.run.steps_in_time(), {"Transits per millistrain", "Ramp"},
@@ -157,11 +159,11 @@ void find_of_run(const Parameters &p, Collector &found)
             "'Walls/End rotation' decides");
   found.add(run.driver != "static", {"Load steps"}, driver);
   found.add(run.driver != "buckling", {"Modes"}, driver);
-  found.add(run.driver == "buckling",
-            {"End shortening", "Longest shortening"}, driver);
+  found.add(run.driver == "buckling", {"End shortening", "Longest shortening"}, driver);
   found.enter("Output");
   found.add(!run.steps_in_time(),
-            {"Samples per millistrain", "Fields interval", "Checkpoint interval"}, driver);
+            {"Samples per millistrain", "Fields interval", "Checkpoint interval"},
+            driver);
 }
 } // namespace
 
@@ -234,7 +236,8 @@ std::vector<std::string> idle_lines(const std::string &file,
     deck = scan_deck(file, ignored);
   for (const std::string &text : overrides)
     scan_override(text, deck, ignored);
-  std::map<std::string, DeckLine> last; // the last line of an entry is the one that counts
+  std::map<std::string, DeckLine>
+      last; // the last line of an entry is the one that counts
   for (const DeckLine &line : deck.entries)
     last[line.path] = line;
 

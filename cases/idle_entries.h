@@ -22,8 +22,8 @@ std::vector<IdleEntry> idle_entries(const Parameters &parameters);
 std::string why_idle(const std::vector<IdleEntry> &entries, const std::string &path);
 
 /// Lines of the deck @p file itself (what it includes serves other scenes too) and of
-/// --set that change nothing, each with its place and the reason. Of the deck's those that
-/// say the default are left out; no file: of --set alone.
+/// --set that change nothing, each with its place and the reason. Of the deck's those
+/// that say the default are left out; no file: of --set alone.
 std::vector<std::string> idle_lines(const std::string &file,
                                     const std::vector<std::string> &overrides,
                                     const Parameters &parameters);

@@ -29,8 +29,8 @@ void demand_one_rank_of_grains(const Parameters &parameters, MPI_Comm communicat
 /// Collective.
 int run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator);
 
-/// Print the composed scene, its effects and why, sizes, predicted time and memory. Builds
-/// no packing. Returns the exit status. For one rank.
+/// Print the composed scene, its effects and why, sizes, predicted time and memory.
+/// Builds no packing. Returns the exit status. For one rank.
 /// \param options deck, overrides and threads
 int check(const Parameters &parameters,
           const RunOptions &options,

@@ -32,11 +32,11 @@ private:
 
 void add_layer(const Parameters &p, const SectionGeometry &g, SceneLines &lines)
 {
-  lines.add("layer", formatted("%s, h = %.3g m, L/h = %.2f, amplitude %.2f h, as %s",
-                               p.layer.shape.c_str(), g.thickness(),
-                               g.wavelength() / g.thickness(),
-                               g.amplitude() / g.thickness(),
-                               p.layer.representation.c_str()));
+  lines.add("layer",
+            formatted("%s, h = %.3g m, L/h = %.2f, amplitude %.2f h, as %s",
+                      p.layer.shape.c_str(), g.thickness(),
+                      g.wavelength() / g.thickness(), g.amplitude() / g.thickness(),
+                      p.layer.representation.c_str()));
   if (p.layer.representation == "grains")
     lines.more(formatted("%.3g grains across, mean diameter %.3g m",
                          p.layer.grains_across, g.diameter()));
@@ -118,9 +118,10 @@ std::string foundation_in_words(const Parameters &p)
 std::string walls_in_words(const Parameters &p)
 {
   if (p.bends())
-    return formatted("turn to %.3g degrees each, which puts a strain of %.3g on the faces "
-                     "of a straight layer",
-                     p.walls.end_rotation, p.end_bending());
+    return formatted(
+        "turn to %.3g degrees each, which puts a strain of %.3g on the faces "
+        "of a straight layer",
+        p.walls.end_rotation, p.end_bending());
   std::string text =
       p.walls.pulls() ? "pull the ends apart by grips" : "shorten the section";
   if (p.run.driver == "quasi-static" || p.run.driver == "dynamic")

@@ -84,8 +84,8 @@ void print_study(const StudyPrediction &prediction, std::ostream &out)
 {
   const std::vector<MemberDeck> &members = prediction.members;
   const auto [least, most] = cheapest_and_dearest(members);
-  const auto at_once = std::min<std::size_t>(static_cast<std::size_t>(cores_of_machine()),
-                                             members.size());
+  const auto at_once =
+      std::min<std::size_t>(static_cast<std::size_t>(cores_of_machine()), members.size());
   const auto line = [&out](const std::string &what, const std::string &text)
   { out << formatted("  %-9s %s\n", what.c_str(), text.c_str()); };
 
@@ -98,20 +98,19 @@ void print_study(const StudyPrediction &prediction, std::ostream &out)
     what.clear();
   }
   const std::vector<std::string> &collect = prediction.study.collect;
-  line("collected",
-       collect.empty() ? "all results"
-                       : join(at_both_ends(collect)) +
-                             (collect.size() > most_listed
-                                  ? " (" + std::to_string(collect.size()) + " figures)"
-                                  : ""));
+  line("collected", collect.empty()
+                        ? "all results"
+                        : join(at_both_ends(collect)) +
+                              (collect.size() > most_listed
+                                   ? " (" + std::to_string(collect.size()) + " figures)"
+                                   : ""));
   line("one run", duration_text(least->core_seconds) + " of one core (" +
                       least->member.name + ") to " + duration_text(most->core_seconds) +
                       " (" + most->member.name + ")");
-  line("all runs", "about " + duration_text(prediction.core_seconds()) + " of one core, " +
-                       duration_text(predicted_seconds(
-                           members, static_cast<int>(at_once))) +
-                       " with " + std::to_string(at_once) + " at once (--jobs), " +
-                       formatted("%.2f GB at most each", 1e-9 * prediction.memory()));
+  line("all runs",
+       "about " + duration_text(prediction.core_seconds()) + " of one core, " +
+           duration_text(predicted_seconds(members, static_cast<int>(at_once))) +
+           " with " + std::to_string(at_once) + " at once (--jobs)");
   for (const std::string &text : varied_in_vain(members))
     line("note", text);
   if (prediction.base.member.empty())

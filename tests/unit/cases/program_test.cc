@@ -88,7 +88,8 @@ TEST(Program, NamesNoDefaultWhereThereIsNone)
 {
   const std::string deck =
       std::string(ANTIFORM_SOURCE_DIR) + "/cases/fractures/quick.prm";
-  const Outcome outcome = run_program("check " + deck + " --set Fractures/Intensity=much");
+  const Outcome outcome =
+      run_program("check " + deck + " --set Fractures/Intensity=much");
   EXPECT_EQ(outcome.status, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("'Fractures/Intensity' = 'much' is no such list"),
             std::string::npos)

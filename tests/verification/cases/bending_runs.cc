@@ -224,7 +224,7 @@ TEST(Bending, OfWhatDoesNotTurnIsRefusedAllAtOnce)
     EXPECT_NE(pressing.output.find(words), std::string::npos) << words << pressing.output;
 }
 
-// Before the walls turn they must not crush what they are to bend: UCS/E' of a plane layer.
+// Before the walls turn they must not crush what they are to bend: UCS/E'.
 TEST(Bending, OfALayerThatPressingWouldCrushIsRefused)
 {
   const double crushing = 162e6 / (56e9 / (1. - 0.2 * 0.2));

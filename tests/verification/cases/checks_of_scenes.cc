@@ -1,4 +1,5 @@
-// What 'antiform check' tells before a run: parts of the scene, studies, meshes too coarse.
+// What 'antiform check' tells before a run: parts of the scene, studies, meshes too
+// coarse.
 #include "support/tiny_run.h"
 
 #include <cmath>
@@ -82,10 +83,10 @@ TEST(Check, RefusesFracturesOfWhichNoneIsThere)
                   with(straight, {"Fractures/Spacing ratio=1000", "Fractures/Phase=0"}))
                 .status,
             0);
-  expect_words(check(cases("fractures/quick.prm"),
-                     with(straight, {"Fractures/Spacing ratio=",
-                                     "Fractures/List=500 0 600 0"})),
-               1, {"'Fractures/List' = '500 0 600 0'", "nothing would be parted", "-60 to 60"});
+  expect_words(
+      check(cases("fractures/quick.prm"),
+            with(straight, {"Fractures/Spacing ratio=", "Fractures/List=500 0 600 0"})),
+      1, {"'Fractures/List' = '500 0 600 0'", "nothing would be parted", "-60 to 60"});
 }
 
 TEST(Check, SaysFirstThatADeckIsAStudy)
@@ -102,7 +103,8 @@ TEST(Check, SaysFirstThatADeckIsAStudy)
 
   const json study = check_json(deck).at("prediction").at("study");
   const double n = study.at("members").get<double>(), all = study.at("core_seconds"),
-               least = study.at("least_core_seconds"), most = study.at("most_core_seconds");
+               least = study.at("least_core_seconds"),
+               most = study.at("most_core_seconds");
   EXPECT_LE(n * least, all);
   EXPECT_GE(n * most, all);
   EXPECT_LT(least, most);
@@ -116,13 +118,13 @@ TEST(Check, TellsOfTheFirstMemberWhereTheDeckAloneIsNoScene)
       << "include " << buried_deck()
       << "\nsubsection Matrix\n  set Burial depth ratio = 0\nend\n"
          "subsection Study\n  set Vary = Matrix/Burial depth ratio = 2, 3\nend\n";
-  expect_words(check(folder.path("study.prm")), 0,
-               {"A study of 2 runs", "The first run, burial-depth-ratio-2",
-                "H/h = 2 above"});
+  expect_words(
+      check(folder.path("study.prm")), 0,
+      {"A study of 2 runs", "The first run, burial-depth-ratio-2", "H/h = 2 above"});
 }
 
-// Half a wavelength of the closed form is 482 m. Columns are 40 m wide in one mesh and 482 m
-// in the other: that one cannot show the wave at all, and is far too stiff.
+// Half a wavelength of the closed form is 482 m. Columns are 40 m wide in one mesh and
+// 482 m in the other: that one cannot show the wave at all, and is far too stiff.
 TEST(Check, AndTheRunWarnOfColumnsTooWideForTheWave)
 {
   const std::string deck = cases("burial-depth/buckling.prm");
@@ -159,7 +161,8 @@ TEST(Check, AndTheRunWarnOfAQuasiStaticSectionWithoutDamping)
   const Outcome run = run_tiny(folder.path("run"), set(undamped));
   EXPECT_EQ(run.status, 0) << run.output;
   EXPECT_NE(run.output.find("warning: " + words), std::string::npos) << run.output;
-  for (const std::string other : {"Components=layer, walls, damping", "Run/Driver=dynamic"})
+  for (const std::string other :
+       {"Components=layer, walls, damping", "Run/Driver=dynamic"})
     EXPECT_EQ(check(tiny_deck(), with(undamped, {other})).output.find(words),
               std::string::npos)
         << other;
