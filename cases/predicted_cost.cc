@@ -36,7 +36,9 @@ constexpr double of_multiplier = 13.; ///< forces and velocities projected
 
 // In linear solutions of a dof.
 constexpr double of_newton = 0.8; ///< assembly by a law, with its mesh made already
-constexpr double of_mode = 6.;    ///< solutions for a buckling mode
+/// Buckling, with its load, its geometric stiffness and what its indicator takes.
+constexpr double of_buckling = 5.5; ///< assemblies and factors, a round
+constexpr double of_mode = 10.;     ///< solutions, a mode
 
 /// Buckling of grains: factors of the saddle point, measured on 700 to 15,000 grains, in
 /// steps of a grain. Two dofs of the mesh cost what two of a grain's three do.
@@ -234,7 +236,7 @@ private:
     const double all = growth > 1. ? sizes_.dofs * (1. - std::pow(growth, -n)) /
                                          (1. - 1. / growth)
                                    : sizes_.dofs;
-    add("assembly and factors", 2. * all * (pace.assembly + pace.factor));
+    add("assembly and factors", of_buckling * all * (pace.assembly + pace.factor));
     add("modes", all * of_mode * p_.run.modes * pace.solution);
   }
 
