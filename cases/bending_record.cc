@@ -40,9 +40,9 @@ void report_bending(const Scene &scene,
   results["wall_rotation"] = {degrees * scene.rotation(), "deg"};
   results["peak_moment"] = {modulus * figures.peak_stress, "N m"};
   results["rotation_at_peak"] = {per_strain * figures.peak_strain, "deg"};
-  // M = B 2 theta/L, and theta is the strain times L/h.
-  results["bending_stiffness"] = {
-      0.5 * scene.geometry.thickness() * modulus * figures.slope, "N m^2"};
+  if (figures.slope) // M = B 2 theta/L, and theta is the strain times L/h
+    results["bending_stiffness"] = {
+        0.5 * scene.geometry.thickness() * modulus * *figures.slope, "N m^2"};
   if (scene.grains->state.cracks.empty())
     return;
   results["first_crack_rotation"] = {per_strain * figures.first_crack_strain, "deg"};

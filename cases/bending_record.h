@@ -4,6 +4,7 @@
 #include "cases/summary.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct BendingFigures
   double peak_strain = 0., peak_stress = 0.;
   double first_crack_strain = 0., first_crack_stress = 0.;
   double crack_initiation_stress = 0.;
-  double slope = 0.; ///< of the stress over the strain while elastic [Pa]
+  std::optional<double> slope; ///< of the stress over the strain while elastic [Pa]
 };
 /// Say it in rotations and moments.
 void report_bending(const Scene &scene,

@@ -1,5 +1,6 @@
 #include "cases/event_run.h"
 
+#include "cases/predicted_course.h"
 #include "coupling/output/tables.h"
 
 namespace antiform::cases
@@ -59,10 +60,11 @@ void EventRun::go_back_to(const coupling::StateWriter &last_record)
 
 std::string EventRun::loading_in_words() const
 {
-  const WallsParameters &walls = parameters_.walls;
   return "from event to event, load steps of at most " +
-         coupling::shortest_text(walls.load_step) + ", unbalanced forces below " +
-         coupling::shortest_text(walls.balance_tolerance) + " of those of joints";
+         coupling::shortest_text(longest_load_step(parameters_)) +
+         ", unbalanced forces below " +
+         coupling::shortest_text(parameters_.walls.balance_tolerance) +
+         " of those of joints";
 }
 
 std::unique_ptr<SteppedRun> EventRun::another(const Parameters &parameters,

@@ -231,7 +231,8 @@ void declare(LayerParameters &layer, Declarations &entries)
                 "Of the random packing; the same seed gives the same bits [-].",
                 Number::at_least(0.));
   entries.flag("Breakable", layer.joint.breakable,
-               "May joints break? If not, would-be breaks are counted.");
+               "May joints break? If not, would-be breaks are counted (not by the "
+               "event driver).");
   entries.choice("Bond model", layer.bond_model,
                  "Law that joins the grains: flat joints, as the source; the older "
                  "parallel bonds and contact bonds, which leave round grains behind when "

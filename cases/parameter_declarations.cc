@@ -76,7 +76,7 @@ void declare(MatrixParameters &matrix, const bool bare, Declarations &entries)
                  Number::at_least(8.));
   entries.flag("Breakable", matrix.breakable,
                "May joints of matrix grains break? If not, would-be breaks are counted "
-               "where strengths are given.");
+               "where strengths are given (not by the event driver).");
   declare_strengths(matrix.tensile_strength, matrix.cohesion, matrix.tan_friction,
                     matrix.residual_friction, entries);
   entries.leave();
@@ -173,7 +173,8 @@ void declare(WallsParameters &walls, Declarations &entries)
                  "constant rate|step and relax|event driver");
   entries.number("Load step", walls.load_step,
                  "Step and relax: shortening in one load step; some 2 % of that at the "
-                 "peak. Event driver: the longest one [-].",
+                 "peak. Event driver: the longest one; less where walls pull, "
+                 "and before the first crack [-].",
                  Number::above(0.).below(0.1));
   entries.number("Relaxation tolerance", walls.relaxation_tolerance,
                  "Step and relax: mean unbalanced force over the mean force of a joint "
@@ -285,7 +286,8 @@ void declare(RunParameters &run, Declarations &entries)
       "quasi-static|dynamic|static|buckling");
   entries.number(
       "Step safety", run.safety,
-      "Step over the rigorous stable step, that of damped grains and nodes [-].",
+      "Step over the rigorous stable step, that of damped grains and nodes; "
+      "the event driver does not use it [-].",
       Number::above(0.).below(1.));
   entries.number("End shortening", run.end_shortening,
                  "Shortening (or extension) at which the run ends, whatever the stress "

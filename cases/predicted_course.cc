@@ -33,6 +33,10 @@ constexpr double stress_before_collapse = 0.8;
 /// matrix has its peak early at 0.03, late at 0.06 and none at 0.13 (cases/confinement).
 constexpr double pressure_to_harden = 0.06;
 
+/// Longest load step of events over the strain at which a specimen parts: what its strength
+/// may be low by [-].
+constexpr double finest_load_step = 0.01;
+
 /// Share of the largest load step that events leave, on the average.
 constexpr double share_of_load_step = 0.6;
 
@@ -118,23 +122,39 @@ double side_pressure(const Parameters &p)
   return confinement_of(p, TheoryOptions().friction_angle).pressure;
 }
 
+namespace
+{
+/// Strain at which a specimen parts: its weakest bed at three quarters of its bonds'
+/// strength, as specimens of rock 1 do [-].
+double parting_strain(const Parameters &p)
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < p.n_beds(); ++k)
+    least = std::min(least, 0.75 * discrete::constants(p.bed(k).law()).tensile_strength /
+                                p.bed(k).young_modulus);
+  return least;
+}
+} // namespace
+
+double longest_load_step(const Parameters &p)
+{
+  return p.walls.pulls() ? std::min(p.walls.load_step, finest_load_step * parting_strain(p))
+                         : p.walls.load_step;
+}
+
 double predict_strain_at_peak(const Parameters &p, const SectionGeometry &g)
 {
-  // Between platens all beds have one strain, and the weakest breaks first; in tension at
-  // three quarters of its bonds' strength, as specimens of rock 1 do.
-  double crushing = std::numeric_limits<double>::infinity(), parting = crushing,
-         thickest = 0.;
+  if (p.walls.pulls())
+    return parting_strain(p);
+  // Between platens all beds have one strain, and the weakest breaks first.
+  double crushing = std::numeric_limits<double>::infinity(), thickest = 0.;
   for (int k = 0; k < p.n_beds(); ++k)
   {
     const LayerParameters &bed = p.bed(k);
     crushing = std::min(crushing, gain_by_pressure(p, bed) * bed.compressive_strength /
                                       bed.young_modulus);
-    parting = std::min(parting, 0.75 * discrete::constants(bed.law()).tensile_strength /
-                                    bed.young_modulus);
     thickest = std::max(thickest, p.bed_share(k) * g.thickness());
   }
-  if (p.walls.pulls())
-    return parting;
   if (g.amplitude() == 0.)
     return crushing;
   const double modulus = p.young_modulus();
@@ -251,7 +271,7 @@ PredictedCourse predict_course(const Parameters &p, const SectionGeometry &g)
   course.field_files = course.shortening / p.output.fields_interval;
   if (p.follows_events())
   {
-    course.steps = course.shortening / (share_of_load_step * p.walls.load_step);
+    course.steps = course.shortening / (share_of_load_step * longest_load_step(p));
     course.samples = course.steps;
     if (course.shortening > predict_strain_at_peak(p, g))
       course.collapse_steps = transits_beyond_peak(p, g) * steps_of_transit(p, g);

@@ -24,6 +24,10 @@ double side_pressure(const Parameters &parameters);
 double predict_strain_at_peak(const Parameters &parameters,
                               const SectionGeometry &geometry);
 
+/// The event driver's longest: that of the deck, but where walls pull short enough for the
+/// strength, which lies within one of its records [-].
+double longest_load_step(const Parameters &parameters);
+
 PredictedCourse predict_course(const Parameters &parameters,
                                const SectionGeometry &geometry);
 } // namespace antiform::cases

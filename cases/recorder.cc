@@ -149,8 +149,10 @@ void Recorder::run(const Stage, const Clock &clock)
   ratio_ = scene_.unbalanced_ratio();
   if (!std::isfinite(energies_.stored_and_spent()) || !std::isfinite(sample.wall_force))
     throw NumericalError("simulation",
-                         "energy or wall force is not a number: the run is unstable. "
-                         "Lower 'Run / Step safety'",
+                         "energy or wall force is not a number: the run is unstable. " +
+                             std::string(scene_.events != nullptr
+                                             ? "Lower 'Walls / Load step'"
+                                             : "Lower 'Run / Step safety'"),
                          energies_.kinetic, 0., clock.step);
   close_ledger(energies_);
   append_cracks();

@@ -11,7 +11,6 @@
 #include "coupling/simulation.h"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,11 +67,12 @@ private:
   bool falls_below_share(const Sample &sample) const; ///< wanted, of the peak
   void look_for_end(const Sample &sample);
   /// Slope of @p values over the strain while the layer is elastic.
-  double elastic_slope(const std::vector<double> &values) const;
+  /// Nothing with fewer than two records there.
+  std::optional<double> elastic_slope(const std::vector<double> &values) const;
   double crack_initiation_stress() const;
   std::vector<std::string> columns() const;
   const std::vector<std::string> &crack_columns() const;
-  void fill_loading(std::map<std::string, Result> &results) const;
+  void fill_loading(Summary &summary) const;
 
   Scene &scene_;
   std::string directory_;

@@ -2,6 +2,7 @@
 #include "cases/bending_record.h"
 #include "cases/fracture_record.h"
 #include "cases/recorder.h"
+#include "cases/remedies.h"
 #include "cases/scene_events.h"
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 
 namespace antiform::cases
 {
-double Recorder::elastic_slope(const std::vector<double> &values) const
+std::optional<double>
+Recorder::elastic_slope(const std::vector<double> &values) const
 {
   // Least squares through the elastic part: up to half of the first crack's or the peak's
   // strain.
@@ -28,7 +30,9 @@ double Recorder::elastic_slope(const std::vector<double> &values) const
     n += 1.;
   }
   const double spread = n * xx - x * x;
-  return n >= 2. && spread > 0. ? (n * xy - x * y) / spread : 0.;
+  if (n < 2. || !(spread > 0.))
+    return {};
+  return (n * xy - x * y) / spread;
 }
 
 double Recorder::crack_initiation_stress() const
@@ -43,18 +47,27 @@ double Recorder::crack_initiation_stress() const
   return begin == cracks_.end() ? 0. : stress_[begin - cracks_.begin()];
 }
 
-void Recorder::fill_loading(std::map<std::string, Result> &results) const
+void Recorder::fill_loading(Summary &summary) const
 {
-  if (scene_.parameters.bends())
+  auto &results = summary.results;
+  const bool bends = scene_.parameters.bends();
+  const std::optional<double> slope = elastic_slope(bends ? stress_ : total_);
+  if (!slope && peak_strain_ > 0.)
+    summary.warnings.push_back(
+        too_few_records(scene_.parameters,
+                        bends ? "the bending stiffness is" : "the section stiffness is",
+                        "between a tenth and a half of the strain at the first crack, or "
+                        "at the peak"));
+  if (bends)
     return report_bending(scene_,
                           {peak_strain_, peak_stress_, first_crack_strain_,
-                           first_crack_stress_, crack_initiation_stress(),
-                           elastic_slope(stress_)},
+                           first_crack_stress_, crack_initiation_stress(), slope},
                           results);
   const double height = scene_.geometry.surface() - scene_.geometry.base();
   results[scene_.pulls() ? "tensile_strength" : "peak_stress"] = {peak_stress_, "Pa"};
   results["strain_at_peak"] = {peak_strain_, "-"};
-  results["section_stiffness"] = {elastic_slope(total_) / height, "Pa"};
+  if (slope)
+    results["section_stiffness"] = {*slope / height, "Pa"};
   results["matrix_share_at_peak"] = {peak_share_, "-"};
   if (!scene_.grains || scene_.grains->state.cracks.empty())
     return;
@@ -67,7 +80,7 @@ void Recorder::fill(Summary &summary) const
   const SectionGeometry &g = scene_.geometry;
   auto &results = summary.results;
   results["shortening"] = {last_.shortening, "-"};
-  fill_loading(results);
+  fill_loading(summary);
   results["unbalanced_ratio"] = {ratio_, "-"};
   if (specimen_)
     specimen_->fill(scene_, peak_stress_, summary);
@@ -122,8 +135,8 @@ void Recorder::fill(Summary &summary) const
       {"closure_error", largest_terms_ > 0. ? largest_gap_ / largest_terms_ : 0.}};
   if (const double closure = summary.energy.at("closure_error"); !(closure < 1e-3))
     summary.warnings.push_back("the energy ledger is open by " + std::to_string(closure) +
-                               " of its terms, 0.001 is the limit: lower 'Run/Step "
-                               "safety', or load more slowly");
+                               " of its terms, 0.001 is the limit: " +
+                               closer_ledger(scene_.parameters));
   if (without_peak_)
     summary.warnings.push_back(
         "the run ended at the longest shortening before its stress had a peak: the peak "

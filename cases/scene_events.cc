@@ -1,6 +1,7 @@
 // A scene of grains that is loaded from event to event.
 #include "cases/scene_events.h"
 
+#include "cases/predicted_course.h"
 #include "cases/scene.h"
 #include "cases/scene_components.h"
 
@@ -20,6 +21,9 @@ constexpr double patience_of_settling = 400.;
 
 /// Load steps between two looks at a layer's stability: one costs about ten solves.
 constexpr std::int64_t stability_interval = 10;
+
+/// Of which the stiffness has those between a tenth and a half of the strain there.
+constexpr int steps_to_first_break = 10;
 
 /// Frictionless ends leave the section free to move along them: one grain at an end, near
 /// the layer's axis, is kept from it. Nothing pushes it that way in balance.
@@ -83,7 +87,8 @@ void add_event_loading(Scene &scene)
   driver.limits = {tolerance, 100. * tolerance, 150. * tolerance};
   driver.settled_before_peak = 0.1 * tolerance;
   driver.settled_after_peak = tolerance;
-  driver.largest_step = p.walls.load_step;
+  driver.largest_step = longest_load_step(p);
+  driver.steps_to_first_break = steps_to_first_break;
   driver.dynamics.damping = p.damping.coefficient;
   const double grains_along = scene.geometry.length() / scene.geometry.diameter();
   driver.dynamics.most_steps = std::llround(longest_settling * grains_along);

@@ -1,14 +1,17 @@
 #include "cases/specimen.h"
 
+#include "cases/remedies.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace antiform::cases
 {
 namespace
 {
-/// Slope of y over x by least squares; 0 with fewer than two points.
-double slope(const std::vector<double> &x, const std::vector<double> &y)
+/// Slope of y over x by least squares; nothing with fewer than two points.
+std::optional<double> slope(const std::vector<double> &x, const std::vector<double> &y)
 {
   const double n = static_cast<double>(x.size());
   double sx = 0., sy = 0., sxx = 0., sxy = 0.;
@@ -20,7 +23,9 @@ double slope(const std::vector<double> &x, const std::vector<double> &y)
     sxy += x[k] * y[k];
   }
   const double spread = n * sxx - sx * sx;
-  return x.size() >= 2 && spread > 0. ? (n * sxy - sx * sy) / spread : 0.;
+  if (x.size() < 2 || !(spread > 0.))
+    return {};
+  return (n * sxy - sx * sy) / spread;
 }
 
 /// 1/A sum of a^2 over elements without bond, whether broken or never bonded, a half of
@@ -165,20 +170,9 @@ void SpecimenRecord::fill(const Scene &scene,
         " % off its value; raise its 'Ramp', or give less pressure");
   results["crack_density"] = {crack_density(scene), "-"};
   const std::size_t peak = peak_sample(peak_stress);
-  if (peak >= stress_.size() || peak < 3)
+  if (peak >= stress_.size() || peak == 0)
     return; // nothing has been loaded yet
-  // Moduli between 30 and 60 % of the stress that shortening has added at the peak.
-  const double first = stress_.front(), rise = peak_stress - first;
-  std::vector<double> axial, lateral, stress;
-  for (std::size_t k = 0; k <= peak; ++k)
-    if (stress_[k] >= first + 0.3 * rise && stress_[k] <= first + 0.6 * rise)
-    {
-      axial.push_back(axial_strain_[k]);
-      lateral.push_back(lateral_strain_[k]);
-      stress.push_back(stress_[k]);
-    }
-  results["young_modulus"] = {slope(axial, stress), "Pa"};
-  results["poisson_ratio"] = {-slope(axial, lateral), "-"};
+  fill_moduli(scene, peak, summary);
   // Cracks become unstable where the volume stops shrinking.
   std::size_t smallest = 0;
   double most = 0.;
@@ -188,8 +182,35 @@ void SpecimenRecord::fill(const Scene &scene,
       most = axial_strain_[k] + lateral_strain_[k];
       smallest = k;
     }
-  if (!scene.pulls())
+  if (!scene.pulls() && peak >= 3)
     results["crack_damage_stress"] = {stress_[smallest], "Pa"};
+}
+
+void SpecimenRecord::fill_moduli(const Scene &scene,
+                                 const std::size_t peak,
+                                 Summary &summary) const
+{
+  // Between 30 and 60 % of the stress that shortening has added at the peak.
+  const double first = stress_.front(), rise = stress_[peak] - first;
+  std::vector<double> axial, lateral, stress;
+  for (std::size_t k = 0; k <= peak; ++k)
+    if (stress_[k] >= first + 0.3 * rise && stress_[k] <= first + 0.6 * rise)
+    {
+      axial.push_back(axial_strain_[k]);
+      lateral.push_back(lateral_strain_[k]);
+      stress.push_back(stress_[k]);
+    }
+  const std::optional<double> modulus = slope(axial, stress),
+                              ratio = slope(axial, lateral);
+  if (modulus && ratio)
+  {
+    summary.results["young_modulus"] = {*modulus, "Pa"};
+    summary.results["poisson_ratio"] = {-*ratio, "-"};
+  }
+  else
+    summary.warnings.push_back(
+        too_few_records(scene.parameters, "Young's modulus and Poisson's ratio are",
+                        "between 30 and 60 % of the stress at the peak"));
 }
 
 void SpecimenRecord::visit_state(coupling::StateArchive &archive)

@@ -30,6 +30,8 @@ public:
   void visit_state(coupling::StateArchive &archive);
 
 private:
+  /// \param peak its sample
+  void fill_moduli(const Scene &scene, std::size_t peak, Summary &summary) const;
   /// Grains about a place: their mean motion is that of a gauge point.
   struct Gauge
   {

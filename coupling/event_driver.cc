@@ -8,6 +8,12 @@
 
 namespace antiform::coupling
 {
+namespace
+{
+/// Share of the largest step that is taken even where something breaks at once [-].
+constexpr double least_step = 1e-3;
+} // namespace
+
 EventDriver::EventDriver(GrainState &state,
                          BalanceOperator &body,
                          HandOver dynamics,
@@ -208,7 +214,15 @@ double EventDriver::step_size(const double sign)
 
   // A little beyond: rounding must not leave the event just ahead for ever.
   const double beyond = 1e-7 * std::max(std::abs(load_), settings_.largest_step);
-  double size = settings_.largest_step;
+  // Record the whole body once shortly before its first break, and on the way there.
+  double largest = settings_.largest_step, first = HUGE_VAL;
+  if (state_.cracks.empty() && !steps.empty())
+    first = *std::min_element(steps.begin(), steps.end());
+  if (settings_.steps_to_first_break > 0)
+    largest = std::clamp((std::abs(load_) + first) / settings_.steps_to_first_break,
+                         least_step * largest, largest);
+  const double short_by = 0.01 * largest;
+  double size = first > 2. * short_by ? std::min(largest, first - short_by) : largest;
   const auto k = static_cast<std::size_t>(settings_.events_per_step);
   if (steps.size() >= k)
   {
@@ -216,12 +230,6 @@ double EventDriver::step_size(const double sign)
     std::nth_element(steps.begin(), wanted, steps.end());
     size = std::min(size, *wanted + beyond);
   }
-  // Record the whole body once shortly before its first break.
-  const double short_by = 0.01 * settings_.largest_step;
-  if (state_.cracks.empty() && !steps.empty())
-    if (const double first = *std::min_element(steps.begin(), steps.end());
-        first > 2. * short_by)
-      size = std::min(size, first - short_by);
   return size;
 }
 

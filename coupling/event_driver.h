@@ -24,6 +24,9 @@ struct DriverSettings
   /// largest one where joints carry much more than their tensile strength.
   BalanceRatios limits{1e-3, 0.1, 0.15};
   double largest_step = 1e-4;  ///< of the load parameter
+  /// Until the first break: at least that many, even ones, by what is foreseen of it, so
+  /// that records tell the stiffness; 0: no such limit.
+  int steps_to_first_break = 0;
   int events_per_step = 0;     ///< k: a load step reaches that many; 0: N / 200
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
