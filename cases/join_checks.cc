@@ -146,8 +146,9 @@ void check_surface_interface(const Parameters &p, Findings &findings)
   if (p.follows_events())
     findings.push_back({{"Walls/Loading", "Matrix/Join"},
                         "the event driver does not know a surface interface. Give "
-                        "'constant rate', or " +
-                            otherwise + "."});
+                        "'constant rate', " +
+                            otherwise +
+                            " where it fits, or 'Matrix/Representation' = 'grains'."});
   // The corners of the layer are looked for between its ends and the mesh.
   const double slope =
       M_PI * p.layer.amplitude_ratio * p.layer.thickness / p.layer_length();

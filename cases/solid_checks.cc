@@ -123,10 +123,14 @@ void check_buckling_of_grains(const Parameters &p, Findings &findings)
     find({"Layer/Locked-in stress", "Run/Driver"},
          "looks for a multiple of one load, the shortening, beside which no other stress "
          "can be. Give 0.");
-  if (p.walls.action != "press" || p.confinement() != nullptr)
-    find({"Walls/Action", "Components", "Run/Driver"},
-         "knows one load, the shortening by the walls. Give press, and remove servo walls "
-         "and membrane from 'Components'.");
+  if (p.walls.action != "press")
+    find({"Walls/Action", "Run/Driver"},
+         "knows one load, the shortening by the walls. Give press.");
+  for (const char *pressing : {"servo walls", "membrane"})
+    if (p.has(pressing))
+      find({"Components", "Run/Driver"},
+           std::string("knows one load, the shortening by the walls. Remove ") + pressing +
+               " from 'Components'.");
   if (p.is_bridged() && !p.bridging.constraint)
     find({"Bridging domain/Constraint", "Run/Driver"},
          "would find the cover loose. Give true.");

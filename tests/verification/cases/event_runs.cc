@@ -328,7 +328,17 @@ TEST(EventRun, RefusesWhatItDoesNotKnow)
   expect_refusals(tiny_deck(),
                   {"Matrix/Representation=grains", "Matrix/Interface=frictionless"},
                   {"'Matrix/Interface' = 'cemented'"});
+  // A contrast that the operator cannot tell from a loose layer, and a cover too thin for
+  // a bridging domain, which grains fit.
+  expect_refusals(tiny_deck(), {"Matrix/Stiffness contrast=1e9"},
+                  {"'Matrix/Stiffness contrast' = '1e", "a contrast of at most 1e+06"});
+  expect_refusals(tiny_deck(), {"Matrix/Join=automatic", "Matrix/Burial depth ratio=0.3"},
+                  {"does not know a surface interface",
+                   "'Matrix/Representation' = 'grains'"});
   EXPECT_EQ(run_program("check " + uniaxial + set({events})).status, 0);
+  for (const char *entry :
+       {"Matrix/Stiffness contrast=1e6", "Matrix/Representation=grains"})
+    EXPECT_EQ(run_program("check " + tiny_deck() + set({events, entry})).status, 0);
 }
 
 // The peak of one packing is chaotic; of eight of 430 grains the mean of the ratios has
