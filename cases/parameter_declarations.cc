@@ -308,7 +308,7 @@ void declare(RunParameters &run, Declarations &entries)
   entries.flag("Estimate loading-rate error", run.estimate_rate_error,
                "Drivers in time: after the run, repeat the last stretch before the peak "
                "at half the loading rate (walls that step and relax: half the load step and "
-               "tolerance; event driver: half the tolerance) and print how far the peak "
+               "tolerance; event driver: likewise) and print how far the peak "
                "moves.");
   entries.whole("Load steps", run.load_steps,
                 "Steps of the static driver up to the end shortening [-].",

@@ -33,8 +33,8 @@ constexpr double stress_before_collapse = 0.8;
 /// matrix has its peak early at 0.03, late at 0.06 and none at 0.13 (cases/confinement).
 constexpr double pressure_to_harden = 0.06;
 
-/// Longest load step of events over the strain at which a specimen parts: what its strength
-/// may be low by [-].
+/// Load step of events over the strain at which a body fails that its strength may be low
+/// by, and is worth it [-].
 constexpr double finest_load_step = 0.01;
 
 /// Share of the largest load step that events leave, on the average.
@@ -243,6 +243,12 @@ double load_steps_with_equilibria(const Parameters &p, const SectionGeometry &g)
   return std::max(1., steps * std::min(1., 1.2 * limit / p.run.end_shortening));
 }
 } // namespace
+
+double half_load_step(const Parameters &p)
+{
+  return std::min(0.5 * longest_load_step(p),
+                  finest_load_step * predict_strain_at_peak(p, SectionGeometry(p)));
+}
 
 PredictedCourse predict_course(const Parameters &p, const SectionGeometry &g)
 {

@@ -27,6 +27,9 @@ double predict_strain_at_peak(const Parameters &parameters,
 /// The event driver's longest: that of the deck, but where walls pull short enough for the
 /// strength, which lies within one of its records [-].
 double longest_load_step(const Parameters &parameters);
+/// Half of it; where it is long, so that events end most steps, short enough for the
+/// strength of any body [-].
+double half_load_step(const Parameters &parameters);
 
 PredictedCourse predict_course(const Parameters &parameters,
                                const SectionGeometry &geometry);

@@ -1,5 +1,6 @@
 #include "cases/rate_estimate.h"
 
+#include "cases/predicted_course.h"
 #include "cases/run_deck.h"
 #include "cases/summary.h"
 #include "coupling/output/whole_file.h"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::string Halving::words() const
 {
-  return is_of_tolerance ? "half the tolerance" : "half the rate";
+  return is_of_tolerance ? "half the load step and tolerance" : "half the rate";
 }
 
 std::string Halving::directory() const
@@ -39,7 +40,10 @@ Parameters at_half_rate(const Parameters &parameters)
   half.title += ", at " + Halving(parameters).words();
   half.run.estimate_rate_error = false;
   if (Halving(parameters).is_of_tolerance)
+  {
+    half.walls.load_step = half_load_step(parameters);
     half.walls.balance_tolerance *= 0.5;
+  }
   else
   {
     half.walls.transits_per_millistrain *= 2.;

@@ -10,7 +10,7 @@ namespace antiform::cases
 {
 struct Summary;
 
-/// What is halved: the loading rate; or, without time, the tolerance of balance.
+/// What is halved: the loading rate; or, without time, load step and tolerance of balance.
 struct Halving
 {
   explicit Halving(const Parameters &parameters)
@@ -26,16 +26,17 @@ struct Halving
 struct RateEstimate
 {
   Halving halving;
-  double peak = 0.;         ///< largest stress at the deck's rate or tolerance [Pa]
+  double peak = 0.;         ///< largest stress at what the deck asks for [Pa]
   double peak_at_half = 0.; ///< [Pa]
 
-  /// Positive where the faster run was the stronger [-].
+  /// Positive where the faster, or coarser, run was the stronger [-].
   double change() const { return peak / peak_at_half - 1.; }
   void fill(Summary &summary) const;
 };
 
 /// Deck of the repetition: half the rate, half the load step and relaxation tolerance, or
-/// half the event driver's tolerance; ends once the stress has fallen by a tenth.
+/// half the event driver's load step (half_load_step()) and tolerance; ends once the stress has fallen by a
+/// tenth.
 Parameters at_half_rate(const Parameters &parameters);
 
 /// The states of the last rises of the stress by a tenth, each a checkpoint of the run at
@@ -55,6 +56,7 @@ public:
   {
     return has_cracks && stress >= 1.1 * stress_[1];
   }
+  bool is_empty() const { return number_ == 0; }
   /// The file for it; that of the one before the last goes once it is written.
   std::string next_file() const { return file(number_ + 1); }
   void kept(double stress);
