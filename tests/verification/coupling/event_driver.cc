@@ -70,8 +70,7 @@ FirstBreak predict(const Specimen &specimen, const discrete::FlatJoint &law)
       const double strain = std::min(in_tension, in_shear);
       if (strain < first.strain)
         first = {j, e,
-                 in_tension < in_shear ? Bond::broken_in_tension
-                                       : Bond::broken_in_shear,
+                 in_tension < in_shear ? Bond::broken_in_tension : Bond::broken_in_shear,
                  strain, 0.};
     }
   }
@@ -104,8 +103,7 @@ void expect_first_break_as_predicted(const discrete::FlatJoint &law, const Bond 
   driver.run_to(0.999999 * predicted.strain);
   EXPECT_TRUE(specimen.state.cracks.empty());
   // Rounding, strains and the shortfall of the load are below a millionth.
-  EXPECT_NEAR(specimen.stress(driver.largest_force()) / predicted.stress, 0.999999,
-              1e-6);
+  EXPECT_NEAR(specimen.stress(driver.largest_force()) / predicted.stress, 0.999999, 1e-6);
   driver.run_to(1.00001 * predicted.strain);
   ASSERT_GE(specimen.state.cracks.size(), 1u);
   const discrete::Crack &crack = specimen.state.cracks.front();
@@ -206,13 +204,71 @@ TEST(EventDriver, OverstressedBondsAreNeverLeftAtARecord)
   EXPECT_GT(specimen.state.cracks.size(), 5u);
 }
 
-TEST(EventDriver, HalfTheTolerancesLeaveThePeak)
+namespace
 {
-  // A specimen whose breaks do not depend on the last digits; others may take another
-  // path at the first difference (docs/theory/quasi_static_driver.md).
-  Specimen one(12., 6), other(12., 6);
-  const double peak = climb(one, {}).peak, closer = climb(other, scaled(0.5)).peak;
-  EXPECT_NEAR(closer / peak, 1., 5e-3) << peak << " " << closer;
+/// Cracks up to the record with the largest force, in their order.
+std::vector<discrete::Crack> cracks_to_peak(const Specimen &specimen,
+                                            const DriverReport &report)
+{
+  const auto peak = std::max_element(report.records.begin(), report.records.end(),
+                                     [](const LoadRecord &a, const LoadRecord &b)
+                                     { return a.force < b.force; });
+  const auto &cracks = specimen.state.cracks;
+  return {cracks.begin(), cracks.begin() + static_cast<std::ptrdiff_t>(peak->cracks)};
+}
+
+struct Closer
+{
+  double ratio = 0.; ///< of the peaks
+  double same = 0.;  ///< share of the cracks to the peak that are in both runs
+};
+
+/// Half the tolerances against the usual ones.
+Closer closer_peak(const std::uint64_t seed)
+{
+  Specimen one(12., seed), other(12., seed);
+  const Ascent usual = climb(one, {}), closer = climb(other, scaled(0.5));
+  const auto a = cracks_to_peak(one, usual.report),
+             b = cracks_to_peak(other, closer.report);
+  const auto is_same = [](const discrete::Crack &c, const discrete::Crack &d)
+  { return c.joint == d.joint && c.element == d.element; };
+  const auto n_same = std::count_if(a.begin(), a.end(),
+                                    [&](const discrete::Crack &c)
+                                    {
+                                      return std::any_of(b.begin(), b.end(),
+                                                         [&](const discrete::Crack &d)
+                                                         { return is_same(c, d); });
+                                    });
+  const Closer found{closer.peak / usual.peak,
+                     static_cast<double>(n_same) /
+                         static_cast<double>(std::max(a.size(), b.size()))};
+  std::printf("  seed %d: peaks %.2f and %.2f MPa, %+.2f %%; %zu and %zu cracks, the "
+              "same %.3f\n",
+              static_cast<int>(seed), 1e-6 * usual.peak, 1e-6 * closer.peak,
+              100. * (found.ratio - 1.), a.size(), b.size(), found.same);
+  return found;
+}
+} // namespace
+
+// Half a percent holds where the same bonds are broken at the peak. Elsewhere a break
+// that came first by a hair has led another way, and peaks differ as those of drivers do:
+// by up to 9 % at 900 grains in the method's own prototype, and sqrt(900 / 296) of that
+// here.
+TEST(EventDriver, HalfTheTolerancesLeaveThePeakInTheMean)
+{
+  constexpr int n = 10;
+  double mean = 0.;
+  int n_same = 0;
+  for (std::uint64_t seed = 1; seed <= n; ++seed)
+  {
+    const Closer found = closer_peak(seed);
+    EXPECT_NEAR(found.ratio, 1., found.same > 0.995 ? 5e-3 : 0.16) << seed;
+    n_same += found.same > 0.995 ? 1 : 0;
+    mean += found.ratio / n;
+  }
+  EXPECT_GE(n_same, 2);
+  // Twice the standard error of ten that scatter by 4 %.
+  EXPECT_NEAR(mean, 1., 0.025);
 }
 
 TEST(EventDriver, HandsOverWhereACascadeGoesOn)
@@ -373,8 +429,7 @@ Reversal reverse(const double load)
   Specimen specimen(12., 6);
   GrainBalance body(specimen.state, specimen.platens);
   DriverSettings settings = {};
-  settings.limits = {1e-7, 1e-5,
-                     1e-5}; // of the stress; the step back changes 1e-3 of it
+  settings.limits = {1e-7, 1e-5, 1e-5}; // of the stress; the step back changes 1e-3 of it
   settings.most_corrections = 5000;
   EventDriver driver(body, settings);
   const auto stress = [&] { return specimen.stress(body.conjugate_force()); };
