@@ -341,13 +341,16 @@ TEST(EventRun, RefusesWhatItDoesNotKnow)
     EXPECT_EQ(run_program("check " + tiny_deck() + set({events, entry})).status, 0);
 }
 
-// The peak of one packing is chaotic; of eight of 430 grains the mean of the ratios has
-// a standard error of some 1.5 %, and walls at 500 transits are 1 to 2 % high themselves.
+// The peak of one packing is chaotic: 9 % between drivers at 900 grains in the method's
+// own prototype, and sqrt(900 / 430) of that here; all but one are within the 8 % asked
+// for. Of eight the mean of the ratios has a standard error of some 1.5 %, and walls at 500
+// transits are 1 to 2 % high themselves.
 TEST(EventRun, FindsTheStrengthOfSlowWallsInTheMeanLong)
 {
   const TemporaryFolder folder;
   constexpr int n_packings = 8;
   double mean = 0.;
+  int n_close = 0;
   for (int seed = 1; seed <= n_packings; ++seed)
   {
     const std::string number = "Layer/Seed=" + std::to_string(seed);
@@ -362,8 +365,10 @@ TEST(EventRun, FindsTheStrengthOfSlowWallsInTheMeanLong)
                 with.at("cpu_seconds").get<double>(),
                 slow.at("cpu_seconds").get<double>());
     EXPECT_NEAR(ratio, 1., 0.13) << seed;
+    n_close += std::abs(ratio - 1.) < 0.08 ? 1 : 0;
     mean += ratio / n_packings;
   }
+  EXPECT_GE(n_close, n_packings - 1);
   EXPECT_NEAR(mean, 1., 0.03);
 }
 } // namespace event_runs_tests

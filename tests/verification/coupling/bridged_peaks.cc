@@ -75,8 +75,10 @@ double peak_in_time(const CoupledShape &shape, const std::int64_t n_steps)
 }
 } // namespace
 
-// A peak is chaotic, as of grains alone; means agree. 200 000 steps are some 2000
-// transits of a wave along the section.
+// A peak is chaotic, as of grains alone: by their scatter one of 545 grains could be 12 %
+// off. These packings are within 2 %, so that what is asked for, 8 % of each, is demanded;
+// of the mean 2.5 %, twice the standard error of six that scatter by 3 %. 200 000 steps are
+// some 2000 transits of a wave along the section.
 TEST(BridgedPeaks, AreThoseOfSlowMotionInTheMeanLong)
 {
   double ratio = 0.;
@@ -86,7 +88,7 @@ TEST(BridgedPeaks, AreThoseOfSlowMotionInTheMeanLong)
     CoupledShape shape;
     shape.seed = static_cast<std::uint64_t>(seed);
     const double one = peak_by_events(shape) / peak_in_time(shape, 200000);
-    EXPECT_NEAR(one, 1., 0.16) << "seed " << seed; // as of 300 grains alone
+    EXPECT_NEAR(one, 1., 0.08) << "seed " << seed;
     ratio += one / n;
   }
   std::printf("  mean ratio %.4f\n", ratio);
