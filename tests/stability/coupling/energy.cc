@@ -99,6 +99,17 @@ History history(Bridged &model,
   run.advance(n_steps + 1);
   return result;
 }
+
+/// On a linear model the half-step energy is conserved exactly and the gap never opens:
+/// both are round-off of 1e5 steps, without a lower bound but 0, which nothing that moves
+/// keeps to. That the gap's measure sees a missing constraint, is the test below.
+void expect_round_off(const History &h, const double most_drift)
+{
+  EXPECT_LE(h.drift, most_drift);
+  EXPECT_GT(h.drift, 0.);
+  EXPECT_LE(h.gap, 1e-10);
+  EXPECT_GT(h.gap, 0.);
+}
 } // namespace
 
 TEST(BridgedEnergy, SmoothStartKeepsItsEnergy)
@@ -108,12 +119,9 @@ TEST(BridgedEnergy, SmoothStartKeepsItsEnergy)
   build(model, shape);
   smooth_start(model, shape);
   antiform::test::Figure figure("energy_smooth", "step,drift,gap,kinetic_share");
-  const History h =
-      history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
+  const History h = history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
   std::printf("  smooth: drift %.1e, gap over displacement %.1e\n", h.drift, h.gap);
-  // On a linear model the half-step energy is conserved exactly: round-off of 1e5 steps.
-  EXPECT_LE(h.drift, 1e-5);
-  EXPECT_LE(h.gap, 1e-10);
+  expect_round_off(h, 1e-5);
 }
 
 TEST(BridgedEnergy, WhiteNoiseKeepsItsEnergy)
@@ -122,11 +130,9 @@ TEST(BridgedEnergy, WhiteNoiseKeepsItsEnergy)
   build(model, small_block(false));
   white_noise(model, amplitude, 3);
   antiform::test::Figure figure("energy_noise", "step,drift,gap,kinetic_share");
-  const History h =
-      history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
+  const History h = history(model, 0.9 * model.stable_step(), 100000, 500, true, &figure);
   std::printf("  white noise: drift %.1e, gap over displacement %.1e\n", h.drift, h.gap);
-  EXPECT_LE(h.drift, 5e-4);
-  EXPECT_LE(h.gap, 1e-10);
+  expect_round_off(h, 5e-4);
 }
 
 TEST(BridgedEnergy, GapOpensWithoutTheConstraint)

@@ -154,15 +154,27 @@ TEST(ChainReflection, IsBelowTwoPercentWithFourCells)
     }
 }
 
+namespace
+{
+/// The static mismatch of the patch test reflects a little of any wave: less than a fifth
+/// of the least that was found when the formulation was chosen, 0.28 %, is no reflection
+/// that was measured.
+void expect_reflected(const double amplitude, const double most)
+{
+  EXPECT_LE(amplitude, most);
+  EXPECT_GE(amplitude, 0.2 * 0.0028);
+}
+} // namespace
+
 TEST(ChainReflection, FallsFurtherWithEightCells)
 {
   for (const double n : {6., 8.})
   {
-    EXPECT_LE(chain({n, 2., 8., false}), 0.012);
-    EXPECT_LE(chain({n, 2., 8., true}), 0.006);
+    expect_reflected(chain({n, 2., 8., false}), 0.012);
+    expect_reflected(chain({n, 2., 8., true}), 0.006);
   }
-  EXPECT_LE(chain({6., 4., 8., false}), 0.012);
-  EXPECT_LE(chain({6., 4., 8., true}), 0.006);
+  expect_reflected(chain({6., 4., 8., false}), 0.012);
+  expect_reflected(chain({6., 4., 8., true}), 0.006);
 }
 
 TEST(ChainReflection, OfUnresolvedWavesIsLarge)
@@ -261,8 +273,8 @@ TEST(LatticeReflection, FallsFurtherWithEightCells)
 {
   for (const double n : {6., 8.})
   {
-    EXPECT_LE(lattice({n, 2., 8., false}), 0.015);
-    EXPECT_LE(lattice({n, 2., 8., true}), 0.005);
+    expect_reflected(lattice({n, 2., 8., false}), 0.015);
+    expect_reflected(lattice({n, 2., 8., true}), 0.005);
   }
 }
 } // namespace antiform::coupling::test::reflection_tests

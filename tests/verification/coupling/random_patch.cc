@@ -198,9 +198,22 @@ PatchError patch_error(const RandomBlock &block, const char *what)
 }
 } // namespace
 
-// A random packing's response is not affine, so the floor is its own scatter in a window
-// of 24 d (0.8 % in stress); thresholds are about 1.7 times what was measured when the
-// formulation was chosen.
+// A random packing's response is not affine: its own scatter is 0.8 % of stress in a
+// window of 24 d, and a tenth of that is the least that strain and stress can be off by.
+// Thresholds are about 1.7 times what was measured when the formulation was chosen; less
+// than a fifth of that (joint force 1.9e-2, mesh 4.8e-2) would mean that the measure sees
+// nothing.
+namespace
+{
+void expect_no_less_than_scatter(const PatchError &error)
+{
+  EXPECT_GE(error.strain, 8e-4);
+  EXPECT_GE(error.stress, 8e-4);
+  EXPECT_GE(error.force, 3.8e-3);
+  EXPECT_GE(error.mesh, 9.6e-3);
+}
+} // namespace
+
 TEST(RandomPatch, KeepsUniformStrainInThreePackings)
 {
   for (const std::uint64_t seed : {1u, 2u, 3u})
@@ -212,7 +225,7 @@ TEST(RandomPatch, KeepsUniformStrainInThreePackings)
     EXPECT_LE(error.stress, 2.5e-2);
     EXPECT_LE(error.force, 3e-2);
     EXPECT_LE(error.mesh, 0.10);
-    EXPECT_GT(error.force, 1e-3); // a packing cannot pass exactly
+    expect_no_less_than_scatter(error);
   }
 }
 
@@ -224,6 +237,7 @@ TEST(RandomPatch, CubicRampDoesNoHarm)
   EXPECT_LE(error.stress, 2.5e-2);
   EXPECT_LE(error.force, 3e-2);
   EXPECT_LE(error.mesh, 0.10);
+  expect_no_less_than_scatter(error);
 }
 
 // One multiplier a grain freezes the scatter of the grains in the overlap about the mean
