@@ -192,7 +192,7 @@ def buckling_rows(directory):
                            ("no_buffer", "overlap 2 cells, no buffer")):
             if part in name:
                 label += f" ({text})"
-        if "_wide" not in name and "H_h_1" in name and "1e4" not in name \
+        if "_wide" not in name and "H_h_1" in name and "10000" not in name \
                 and "random" not in name and "H_h_10" not in name:
             continue  # the short sections of the fast suite
         cases.append((("random" in name, "eight" in name, "buffer" in name,
