@@ -86,6 +86,16 @@ std::optional<double> error_of(const AccuracyCurve &curve, const std::string &va
   return std::nullopt;
 }
 
+std::vector<std::string> AccuracyPlan::warnings() const
+{
+  std::vector<std::string> texts;
+  for (const AccuracySetting &setting : settings)
+    if (!setting.error)
+      texts.push_back("'" + setting.entry + "' = " + setting.value + ": " +
+                      setting.why_unknown);
+  return texts;
+}
+
 double AccuracyPlan::sum_of_errors() const
 {
   double sum = 0.;
@@ -233,24 +243,133 @@ std::optional<double> scatter_of_packings(const Parameters &p, const AccuracyPla
   return packing_scatter(across);
 }
 
-std::string smallest_in_words(const Curves &curves)
-{
-  double finest = 0.;
-  for (const AccuracyCurve &curve : curves)
-    finest += curve.rows.back().error;
-  const double rounded = std::ceil(finest * 1e3) * 0.1; // [%], not below what there is
-  return "smaller than any that has been measured of a scene like this. The smallest "
-         "possible is " +
-         short_text(rounded) +
-         " %, with all of docs/accuracy.md at its finest. Give that or more, or leave it "
-         "out and give the resolution yourself.";
-}
-
 std::string percent_text(const double share)
 {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g %%", 100. * share);
   return text;
+}
+
+/// The curves of a scene. What the deck gives is a single row among the open ones: its
+/// error counts, and nothing can be done about it.
+struct Ways
+{
+  Curves open; ///< with the deck's entries as they are; without those of unknown error
+  Curves all;  ///< as if the deck gave none of them
+};
+
+/// @p curves have it.
+std::size_t place_of(const Curves &curves, const std::string &entry)
+{
+  std::size_t k = 0;
+  while (curves[k].entry != entry)
+    ++k;
+  return k;
+}
+
+/// How slender the scene is, for those knobs whose error grows with it: a long layer
+/// bends slowly, and walls that a stout one follows drive it on. 0: it does not matter.
+double slenderness_of(const Parameters &p, const std::string &knob)
+{
+  const bool is_of_loading = knob.find("loading rate") == 0 || knob == "load step" ||
+                             knob.find(" tolerance") != std::string::npos;
+  return is_of_loading ? p.layer_length() / p.layer.thickness : 0.;
+}
+
+std::string why_unknown(const Parameters &p,
+                        const std::string &knob,
+                        const AccuracyCurve &curve)
+{
+  if (curve.rows.empty())
+    return "the record has no layer as slender as this one, L/h = " +
+           short_text(slenderness_of(p, knob)) +
+           ", so nothing is chosen and no error counted. Compare two values yourself" +
+           (curve.entry == "Walls/Transits per millistrain"
+                ? ", or take 'Walls/Loading = event driver', which knows no rate."
+                : ".");
+  return "outside of the record, which goes from " + curve.rows.front().value + " to " +
+         curve.rows.back().value + ", so no error is counted.";
+}
+
+/// The setting as it stands before the choice; adds its curves to @p ways.
+AccuracySetting setting_of(const Parameters &p,
+                           const std::string &knob,
+                           const std::set<std::string> &given,
+                           Ways &ways)
+{
+  AccuracyCurve curve = accuracy_curve(knob, slenderness_of(p, knob));
+  if (p.has_layer_mesh())
+    measure_in_diameters(p, curve);
+  if (curve.entry == "Layer/Grains across" && p.run.steps_in_time())
+    price_in_steps(curve);
+  AccuracySetting setting;
+  setting.entry = curve.entry;
+  setting.value = value_of(p, curve.entry);
+  setting.is_given = given.count(curve.entry) > 0;
+  setting.of = curve.of;
+  setting.truth = curve.truth;
+  setting.error = error_of(curve, setting.value);
+  if (!setting.error)
+    setting.why_unknown = why_unknown(p, knob, curve);
+  leave_out_what_does_not_fit(p, knob, curve);
+  if (!curve.rows.empty())
+  {
+    setting.is_chosen = !setting.is_given;
+    ways.all.push_back(curve);
+  }
+  if (!setting.is_chosen && setting.error)
+    curve.rows = {{setting.value, *setting.error, 1.}};
+  if (setting.is_chosen || setting.error)
+    ways.open.push_back(curve);
+  return setting;
+}
+
+double smallest_of(const Curves &curves)
+{
+  double finest = 0.;
+  for (const AccuracyCurve &curve : curves)
+    finest += curve.rows.back().error;
+  return finest;
+}
+
+/// Up to the next tenth of a percent, so that what is said can be had.
+std::string tenths_text(const double share)
+{
+  return short_text(std::ceil(share * 1e3) * 0.1) + " %";
+}
+
+/// Why no choice is near enough, and which of the deck's entries stand in its way.
+std::string smallest_in_words(const AccuracyPlan &plan, const Ways &ways)
+{
+  std::string entries, said, other;
+  Curves freed = ways.open;
+  for (const AccuracyCurve &curve : ways.all)
+  {
+    if (curve.entry == "Walls/Transits per millistrain")
+      other = " 'Walls/Loading = event driver' has no rate that would count.";
+    const auto setting = std::find_if(plan.settings.begin(), plan.settings.end(),
+                                      [&](const AccuracySetting &one)
+                                      { return one.entry == curve.entry; });
+    if (setting->is_chosen || !setting->error ||
+        *setting->error <= curve.rows.back().error)
+      continue;
+    freed[place_of(freed, curve.entry)] = curve;
+    entries += (entries.empty() ? "'" : " and '") + curve.entry + "'";
+    said += (said.empty() ? "'" : ", '") + curve.entry + "' = " + setting->value +
+            " is off by " + percent_text(*setting->error);
+  }
+  if (entries.empty())
+    return "smaller than any that has been measured of a scene like this. The smallest "
+           "possible is " +
+           tenths_text(smallest_of(ways.open)) +
+           ", with all of docs/accuracy.md at its finest. Give that or more, or leave it "
+           "out and give the resolution yourself." +
+           other;
+  return "smaller than the deck's other entries let it be: " + said +
+         ". The smallest possible is " + tenths_text(smallest_of(ways.open)) +
+         ", with the rest of docs/accuracy.md at its finest. Give that or more, or leave " +
+         entries + " out of the deck to be chosen (then " +
+         tenths_text(smallest_of(freed)) + " is possible)." + other;
 }
 } // namespace
 
@@ -260,45 +379,26 @@ AccuracyPlan plan_accuracy(const Parameters &p,
 {
   AccuracyPlan plan;
   plan.percent = p.accuracy.percent;
-  Curves all, free;
+  Ways ways;
   for (const std::string &knob : knobs_of(p))
-  {
-    AccuracyCurve curve = accuracy_curve(knob);
-    if (p.has_layer_mesh())
-      measure_in_diameters(p, curve);
-    if (curve.entry == "Layer/Grains across" && p.run.steps_in_time())
-      price_in_steps(curve);
-    AccuracySetting setting{curve.entry, value_of(p, curve.entry), false, {}, curve.of,
-                            curve.truth};
-    setting.error = error_of(curve, setting.value);
-    leave_out_what_does_not_fit(p, knob, curve);
-    if (!curve.rows.empty())
-    {
-      setting.is_chosen = given.count(curve.entry) == 0;
-      all.push_back(curve);
-      if (setting.is_chosen)
-        free.push_back(curve);
-    }
-    plan.settings.push_back(setting);
-  }
-  const std::vector<std::size_t> rows = choose_rows(free, 0.01 * plan.percent);
+    plan.settings.push_back(setting_of(p, knob, given, ways));
+  const std::vector<std::size_t> rows = choose_rows(ways.open, 0.01 * plan.percent);
   if (plan.settings.empty())
     problem = "the record has nothing of this scene: neither grains that are pressed or "
               "buckle nor square cells that are not refined. Leave it out, and see "
               "docs/accuracy.md.";
-  else if (rows.size() < free.size())
-    problem = smallest_in_words(free);
+  else if (rows.size() < ways.open.size())
+    problem = smallest_in_words(plan, ways);
   if (!problem.empty())
     return plan;
-  std::size_t k = 0;
   for (AccuracySetting &setting : plan.settings)
     if (setting.is_chosen)
     {
-      setting.value = free[k].rows[rows[k]].value;
-      setting.error = free[k].rows[rows[k]].error;
-      ++k;
+      const std::size_t k = place_of(ways.open, setting.entry);
+      setting.value = ways.open[k].rows[rows[k]].value;
+      setting.error = ways.open[k].rows[rows[k]].error;
     }
-  plan.alternatives = alternatives_to(0.01 * plan.percent, all);
+  plan.alternatives = alternatives_to(0.01 * plan.percent, ways.all);
   plan.packing_scatter = scatter_of_packings(p, plan);
   return plan;
 }
@@ -317,9 +417,11 @@ std::string accuracy_json(const AccuracyPlan &plan)
         {{"entry", setting.entry},
          {"value", setting.value},
          {"chosen", setting.is_chosen},
+         {"given", setting.is_given},
          {"error_percent", setting.error ? Json(100. * *setting.error) : Json()},
          {"of", setting.of},
          {"truth", setting.truth}});
+  json["warnings"] = plan.warnings();
   json["alternatives"] = Json::array();
   for (const AccuracyAlternative &other : plan.alternatives)
   {
@@ -342,17 +444,21 @@ std::vector<std::string> accuracy_in_words(const AccuracyPlan &plan)
   {
     char text[256];
     std::snprintf(text, sizeof text, "  %-36s %-8s %-10s %s", setting.entry.c_str(),
-                  setting.value.c_str(), setting.is_chosen ? "chosen" : "the deck's",
+                  setting.value.c_str(),
+                  setting.is_chosen  ? "chosen"
+                  : setting.is_given ? "the deck's"
+                                     : "the default",
                   setting.error ? (percent_text(*setting.error) + " of the " +
                                    setting.of + ", against " + setting.truth)
                                       .c_str()
-                                : "outside of the record");
+                                : "not known");
     lines.emplace_back(text);
-    if (!setting.is_chosen && setting.error && *setting.error > 0.01 * plan.percent)
-      lines.push_back("    this alone is more than is wanted; leave '" + setting.entry +
-                      "' out of the deck to have it chosen");
   }
-  lines.push_back("  together at most " + percent_text(plan.sum_of_errors()));
+  const std::vector<std::string> unknown = plan.warnings();
+  lines.push_back("  together at most " + percent_text(plan.sum_of_errors()) +
+                  (unknown.empty() ? "" : ", but for what no error is known of"));
+  for (const std::string &text : unknown)
+    lines.push_back("  warning: " + text);
   if (plan.packing_scatter)
     lines.push_back("  one packing's peak is off the mean of many by " +
                     percent_text(*plan.packing_scatter) +

@@ -22,7 +22,7 @@ struct AccuracyCurve
   };
   std::string entry;     ///< "Section/Entry"
   std::string of, truth; ///< what it is the error of, and against what
-  std::vector<Row> rows; ///< from coarse to fine, one at least
+  std::vector<Row> rows; ///< from coarse to fine
 };
 
 /// For each curve the row to take so that the errors together are at most @p wanted: from
@@ -40,8 +40,10 @@ std::optional<double> error_of(const AccuracyCurve &curve, const std::string &va
 struct AccuracySetting
 {
   std::string entry, value;
-  bool is_chosen = false;      ///< by the record; else as the deck says
+  bool is_chosen = false;      ///< by the record
+  bool is_given = false;       ///< by the deck; neither: the default stands
   std::optional<double> error; ///< by the record, where it has one [-]
+  std::string why_unknown;     ///< why the record has none
   std::string of, truth;
 };
 
@@ -63,11 +65,13 @@ struct AccuracyPlan
   /// Standard deviation of one packing's peak [-]; where grains may break.
   std::optional<double> packing_scatter;
 
-  double sum_of_errors() const; ///< of those that are known [-]
+  double sum_of_errors() const;              ///< of those that are known [-]
+  std::vector<std::string> warnings() const; ///< of those that are not
 };
 
 /// What the record says of a scene in which @p given are the entries that its deck sets:
-/// these stay. Reads @p p.accuracy.percent. \param[out] problem why nothing can be chosen
+/// these stay, their errors count first. Reads @p p.accuracy.percent.
+/// \param[out] problem why nothing can be chosen, and which entries stand in the way
 AccuracyPlan plan_accuracy(const Parameters &p,
                            const std::set<std::string> &given,
                            std::string &problem);
@@ -77,9 +81,10 @@ std::vector<std::string> accuracy_in_words(const AccuracyPlan &plan);
 /// The same for programs: a JSON object as text (docs/output.md).
 std::string accuracy_json(const AccuracyPlan &plan);
 
-/// Those curves of the record (cases/accuracy/record.csv, compiled in) that @p knob
-/// names. Throws std::logic_error where there is none.
-AccuracyCurve accuracy_curve(const std::string &knob);
+/// The curve of the record (cases/accuracy/record.csv, compiled in) that @p knob names:
+/// of its scenes the stoutest that is no stouter than @p length_ratio, L/h of a layer.
+/// Without rows where all are stouter. Throws std::logic_error for an unknown name.
+AccuracyCurve accuracy_curve(const std::string &knob, double length_ratio = 0.);
 /// Standard deviation between packings over the mean, with @p grains_across, of the peak.
 std::optional<double> packing_scatter(double grains_across);
 } // namespace antiform::cases

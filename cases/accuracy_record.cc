@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -70,25 +71,47 @@ double largest_error(const Line &line)
   return 0.01 * (std::abs(number(line, "error_percent")) +
                  number(line, "scatter_percent") / std::sqrt(number(line, "packings")));
 }
+
+/// L/h of the layers that the line speaks of, at most.
+double largest_length_ratio(const Line &line)
+{
+  return line.at("largest_length_ratio") == "any" ? std::numeric_limits<double>::infinity()
+                                                  : number(line, "largest_length_ratio");
+}
+
+/// The least of these in the lines of @p knob that is no less than @p length_ratio; 0:
+/// none.
+double stoutest_scene(const std::string &knob, const double length_ratio)
+{
+  double least = 0.;
+  for (const Line &line : record())
+    if (const double ratio = largest_length_ratio(line); line.at("knob") == knob &&
+                                                         ratio >= length_ratio &&
+                                                         (least == 0. || ratio < least))
+      least = ratio;
+  return least;
+}
 } // namespace
 
-AccuracyCurve accuracy_curve(const std::string &knob)
+AccuracyCurve accuracy_curve(const std::string &knob, const double length_ratio)
 {
   AccuracyCurve curve;
+  const double scene = stoutest_scene(knob, length_ratio);
   for (const Line &line : record())
     if (line.at("knob") == knob)
     {
       curve.entry = line.at("entry");
       curve.of = line.at("of");
       curve.truth = line.at("truth");
-      curve.rows.push_back(
-          {line.at("value"), largest_error(line), number(line, "cpu_seconds")});
+      if (largest_length_ratio(line) == scene)
+        curve.rows.push_back(
+            {line.at("value"), largest_error(line), number(line, "cpu_seconds")});
     }
-  if (curve.rows.empty())
+  if (curve.entry.empty())
     throw std::logic_error("the record has no '" + knob + "'");
   // A coarser row is not credited with an error that a finer one does not have.
-  for (std::size_t k = curve.rows.size() - 1; k > 0; --k)
-    curve.rows[k - 1].error = std::max(curve.rows[k - 1].error, curve.rows[k].error);
+  for (std::size_t k = curve.rows.size(); k > 1; --k)
+    curve.rows[k - 2].error = std::max(curve.rows[k - 2].error, curve.rows[k - 1].error);
   return curve;
 }
 

@@ -118,6 +118,8 @@ Json to_json(const Parameters &p, const SectionGeometry &g, const Prediction &pr
                          {"P21_per_m", traces.intensity}};
   }
   json["warnings"] = doubts_of(p, g);
+  for (const std::string &text : p.accuracy.warnings())
+    json["warnings"].push_back(text);
   json["prediction"] = to_json(prediction);
   if (p.accuracy.percent > 0.)
     json["accuracy"] = Json::parse(accuracy_json(p.accuracy));
