@@ -3,7 +3,9 @@
 // about 1000, 4000 and 15000 grains, one after the other in one run, each with both.
 // Arguments: first and last seed (1 1), least and largest number of grains (0 20000),
 // then settings of the driver as name=value, to see what they are worth, or
-// transits=value.
+// transits=value, drop=share, side_load=value [N/m on a mean diameter], layers=1 for bent
+// layers of some 1000 grains in place of specimens.
+#include "support/bent_layer.h"
 #include "support/slow_loading.h"
 #include "support/specimen_fixture.h"
 
@@ -13,6 +15,7 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <vector>
 
 using namespace antiform::coupling;
 using namespace antiform::coupling::test;
@@ -45,7 +48,8 @@ bool set(DriverSettings &settings, const std::string &text)
       {"most_breaks", &settings.most_breaks},
       {"before_peak", &settings.settled_before_peak},
       {"after_peak", &settings.settled_after_peak},
-      {"damping", &settings.dynamics.damping}};
+      {"damping", &settings.dynamics.damping},
+      {"drop", &settings.stop_drop}};
   const std::map<std::string, int *> numbers{
       {"events", &settings.events_per_step},
       {"most_corrections", &settings.most_corrections},
@@ -61,11 +65,13 @@ bool set(DriverSettings &settings, const std::string &text)
   return true;
 }
 
-Ascent climb(Specimen &specimen, const DriverSettings &settings)
+Ascent climb(Specimen &specimen,
+             const DriverSettings &settings,
+             const std::vector<GrainLoad> &loads)
 {
   Ascent ascent;
   const double start = processor_seconds();
-  GrainBalance body(specimen.state, specimen.platens);
+  GrainBalance body(specimen.state, specimen.platens, loads);
   EventDriver driver(body, settings);
   while (true)
   {
@@ -112,14 +118,16 @@ void print_unit_costs(Specimen &specimen)
               1e3 * (solved - start) / n, 1e3 * (processor_seconds() - solved) / n);
 }
 
-void compare(const double width,
+void compare(Specimen &one,
+             Specimen &other,
              const std::uint64_t seed,
              const DriverSettings &settings,
-             const double transits)
+             const double transits,
+             const double side_load)
 {
-  Specimen one(width, seed), other(width, seed);
-  const Ascent driver = climb(one, settings);
-  const SlowLoading slow = slow_loading(other, transits, driver.peak.load, 0.1);
+  const Ascent driver = climb(one, settings, side_loads(one, side_load));
+  const SlowLoading slow = slow_loading(other, transits, driver.peak.load,
+                                        settings.stop_drop, side_loads(other, side_load));
   std::printf("%zu grains, %zu joints, seed %lu\n", one.n_grains(),
               one.state.joints.size(), seed);
   print_unit_costs(one);
@@ -144,17 +152,32 @@ int main(const int argc, char **argv)
             least = argc > 3 ? std::atoi(argv[3]) : 0,
             most = argc > 4 ? std::atoi(argv[4]) : 20000;
   DriverSettings settings;
-  double transits = 300.;
+  double transits = 300., side_load = 0., layers = 0.;
   for (int k = 5; k < argc; ++k)
-    if (std::sscanf(argv[k], "transits=%lf", &transits) != 1 && !set(settings, argv[k]))
+    if (std::sscanf(argv[k], "transits=%lf", &transits) != 1 &&
+        std::sscanf(argv[k], "side_load=%lf", &side_load) != 1 &&
+        std::sscanf(argv[k], "layers=%lf", &layers) != 1 && !set(settings, argv[k]))
     {
       std::fprintf(stderr, "no setting '%s'\n", argv[k]);
       return 1;
     }
   std::printf("kernel %s\n", antiform::discrete::joint_kernel_level().c_str());
-  for (int seed = first; seed <= last; ++seed)
+  for (int number = first; number <= last; ++number)
+  {
+    const auto seed = static_cast<std::uint64_t>(number);
+    if (layers > 0.)
+    {
+      settings.largest_step = 1e-5; // a hundredth of the way to the peak
+      BentLayer one(seed), other(seed);
+      compare(one, other, seed, settings, transits, 0.);
+      continue;
+    }
     for (const double width : {22., 44.5, 84.6})
       if (const double n = 2.1 * width * width; n > least && n < most)
-        compare(width, static_cast<std::uint64_t>(seed), settings, transits);
+      {
+        Specimen one(width, seed), other(width, seed);
+        compare(one, other, seed, settings, transits, side_load);
+      }
+  }
   return 0;
 }
