@@ -122,18 +122,27 @@ void add_theory(CLI::App &app, CommandLine &line)
       *app.add_subcommand("theory", "the closed forms for a deck's scene: regime, "
                                     "critical stress, wavelength, mechanism");
   add_deck(command, line.run);
-  command.add_flag("--json", line.theory.json, "for programs (SI units)");
+  CLI::Option *const json =
+      command.add_flag("--json", line.theory.json, "for programs (SI units)");
+  CLI::Option *const plot =
+      command
+          .add_option("--plot", line.theory.plot,
+                      "draw the diagram of gamma against Lambda into this file")
+          ->check(
+              [](const std::string &name)
+              {
+                const bool is_svg =
+                    name.size() > 4 && name.compare(name.size() - 4, 4, ".svg") == 0;
+                return is_svg ? "" : "give a name that ends in .svg";
+              })
+          ->type_name("FILE.svg");
   command
-      .add_option("--plot", line.theory.plot,
-                  "draw the diagram of gamma against Lambda into this file")
-      ->check(
-          [](const std::string &name)
-          {
-            const bool is_svg =
-                name.size() > 4 && name.compare(name.size() - 4, 4, ".svg") == 0;
-            return is_svg ? "" : "give a name that ends in .svg";
-          })
-      ->type_name("FILE.svg");
+      .add_option("--along", line.theory.along,
+                  "a table (CSV) of the closed forms along these values, written as "
+                  "'Study/Vary' in a deck")
+      ->excludes(json)
+      ->excludes(plot)
+      ->type_name("ENTRY=VALUES");
   command
       .add_option("--friction-angle", line.theory.friction_angle,
                   "of the rock, by which confinement adds to its strength; 'antiform "
@@ -142,7 +151,10 @@ void add_theory(CLI::App &app, CommandLine &line)
       ->type_name("DEGREES");
   command.footer("Example:\n  antiform theory cases/burial-depth/anticline.prm\n"
                  "  antiform theory cases/burial-depth/anticline.prm --plot diagram.svg "
-                 "--set \"Matrix/Burial depth ratio=10\"");
+                 "--set \"Matrix/Burial depth ratio=10\"\n"
+                 "  antiform theory cases/burial-depth/study.prm --set \"Matrix/Cover "
+                 "rows=1\" --along \"Matrix/Burial depth ratio = 0.01 to 100 in 60 "
+                 "logarithmic\"");
   command.callback([&line] { line.command = CommandLine::Command::theory; });
 }
 

@@ -5,6 +5,7 @@
 #include "cases/study.h"
 #include "cases/study_decks.h"
 #include "cases/theory.h"
+#include "cases/theory_table.h"
 #include "continuum/errors.h"
 
 #include <deal.II/base/mpi.h>
@@ -77,6 +78,8 @@ int check_deck(const CommandLine &line)
 
 int theory_of_deck(const CommandLine &line)
 {
+  if (!line.theory.along.empty())
+    return print_theory_table(line.run.deck, line.run.overrides, line.theory, std::cout);
   const Parameters parameters = read_deck(line.run.deck, line.run.overrides);
   demand_calibration(parameters, false);
   return print_theory(parameters, line.theory, std::cout);

@@ -1,12 +1,12 @@
 #include "cases/study_decks.h"
 
 #include "cases/calibrate.h"
-#include "cases/closed_forms.h"
 #include "cases/deck_reader.h"
 #include "cases/idle_entries.h"
 #include "cases/predicted_cost.h"
 #include "cases/run_deck.h"
 #include "cases/theory.h"
+#include "cases/theory_table.h"
 #include "coupling/output/whole_file.h"
 #include "coupling/state_image.h"
 
@@ -78,18 +78,6 @@ std::string without_override(const std::string &problem,
       if (problem.compare(0, begin.size(), begin) == 0)
         return "'Study/Vary'" + problem.substr(option.size());
   return problem;
-}
-
-std::map<std::string, Result> theory_figures(const Parameters &p)
-{
-  std::map<std::string, Result> figures;
-  for (const TheorySection &section : closed_forms(p, TheoryOptions().friction_angle))
-    for (const TheoryRow &row : section.rows)
-      for (const Quantity &q : row.quantities)
-        if (row.applies && std::isfinite(q.value))
-          figures["theory/" + section.name + "/" + row.name +
-                  (q.name.empty() ? "" : "/" + q.name)] = {q.value, q.unit};
-  return figures;
 }
 
 /// Overrides of a member: those of the command line, and its values.
@@ -184,7 +172,7 @@ std::vector<MemberDeck> read_members(const std::string &file,
         if (const std::string reason = why_idle(idle, path); !reason.empty())
           decks.back().idle[path] = reason;
       if (collects_theory)
-        decks.back().theory = theory_figures(p);
+        decks.back().theory = theory_figures(p, TheoryOptions().friction_angle);
     }
     catch (const InputError &error)
     {

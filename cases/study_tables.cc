@@ -15,17 +15,6 @@ namespace antiform::cases
 {
 namespace
 {
-/// Quoted where commas would make it two cells.
-std::string csv_cell(const std::string &text)
-{
-  if (text.find_first_of(",\"\n") == std::string::npos)
-    return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 /// What is left of a warning that other members have with other numbers.
 std::string without_numbers(const std::string &text)
 {
@@ -59,6 +48,25 @@ std::vector<std::string> units_of(const std::vector<std::string> &paths)
 }
 } // namespace
 
+std::string csv_cell(const std::string &text)
+{
+  if (text.find_first_of(",\"\n") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<std::string> value_columns(const std::vector<std::string> &paths)
+{
+  std::vector<std::string> names = short_names(paths, '_');
+  const std::vector<std::string> units = units_of(paths);
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    names[i] = column_name(names[i], units[i]);
+  return names;
+}
+
 std::string column_name(const std::string &name, const std::string &unit)
 {
   std::string result;
@@ -83,12 +91,9 @@ std::string column_name(const std::string &name, const std::string &unit)
 
 StudyTable::StudyTable(std::vector<std::string> paths, std::vector<std::string> collect)
     : paths_(std::move(paths))
-    , value_names_(short_names(paths_, '_'))
+    , value_names_(value_columns(paths_))
     , collect_(std::move(collect))
 {
-  const std::vector<std::string> units = units_of(paths_);
-  for (std::size_t i = 0; i < paths_.size(); ++i)
-    value_names_[i] = column_name(value_names_[i], units[i]);
 }
 
 std::vector<StudyTable::Column> StudyTable::columns(const StudyMembers &members) const

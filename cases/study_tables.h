@@ -43,6 +43,12 @@ private:
   std::vector<std::string> collect_;
 };
 
+/// The columns of entries in the header of a table, with units: "burial_depth_ratio".
+std::vector<std::string> value_columns(const std::vector<std::string> &paths);
+
+/// Quoted where commas would make it two cells.
+std::string csv_cell(const std::string &text);
+
 /// "name_unit" for the header of a table: "peak_stress_Pa", "steps", "k_w_Pa_per_m".
 std::string column_name(const std::string &name, const std::string &unit);
 } // namespace antiform::cases

@@ -12,6 +12,7 @@ struct TheoryOptions
 {
   bool json = false;
   std::string plot;            ///< file (.svg) for the diagram; empty: none
+  std::string along;           ///< values of entries for a table; empty: none
   double friction_angle = 42.; ///< of the rock, in the large [degrees]
 };
 

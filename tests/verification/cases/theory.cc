@@ -1,5 +1,6 @@
 // antiform theory: the closed forms for the scenes of decks, as users ask for them. The
 // forms themselves are in tests/unit/continuum.
+#include "support/files.h"
 #include "support/table.h"
 #include "support/tiny_run.h"
 
@@ -282,5 +283,38 @@ TEST(Theory, RefusesWhatItCannotAnswer)
       run_program("theory " + tiny_deck() + set({"Matrix/Colour=red"}));
   EXPECT_EQ(unknown.status, 1) << unknown.output;
   EXPECT_NE(unknown.output.find("'Matrix/Colour'"), std::string::npos);
+}
+TEST(Theory, IsTabulatedAlongValuesOfEntries)
+{
+  const TemporaryFolder folder;
+  const Outcome outcome = run_command(clean_environment() + ANTIFORM_PROGRAM " theory " +
+                                      deck("burial-depth/anticline") +
+                                      " --along \"Matrix/Burial depth ratio = 1, 3, 30 & "
+                                      "Layer/Length ratio = 50, 60, 70\"" +
+                                      " >" + folder.path("table.csv"));
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const CsvTable lines(folder.path("table.csv"));
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines.names().at(0), "burial_depth_ratio");
+  EXPECT_EQ(lines.column("length_ratio"), (std::vector<double>{50., 60., 70.}));
+  // The numbers of 'antiform theory' with these values, by the names of study.csv.
+  const Json json = theory_of("burial-depth/anticline",
+                              {"Matrix/Burial depth ratio=30", "Layer/Length ratio=70"});
+  EXPECT_EQ(lines.column("theory_regime_theta").at(2),
+            value(json, {"regime", "theta"}, "-"));
+  EXPECT_EQ(lines.column("theory_at_length_with_matrix_guided_Pa").at(2),
+            value(json, {"at_length", "with_matrix", "guided"}, "Pa"));
+}
+
+TEST(Theory, RefusesValuesThatMakeNoSceneAllAtOnce)
+{
+  const std::string begin = "theory " + deck("burial-depth/anticline") + " --along ";
+  const Outcome outcome =
+      run_program(begin + "\"Matrix/Burial depth ratio = 3, -1, x; Layr/Thickness = 1\"");
+  EXPECT_EQ(outcome.status, 1);
+  for (const char *part : {"'-1'", "'x'", "Layr/Thickness", "--along"})
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part << outcome.output;
+  for (const char *wrong : {"Matrix/Burial", "\"Layer/Seed = seeds 1 to 20000\""})
+    EXPECT_EQ(run_program(begin + wrong).status, 1) << wrong;
 }
 } // namespace theory_tests
