@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 extern char **environ;
@@ -61,6 +62,9 @@ int write_report(const ReportOptions &options)
       throw InputError({"antiform report: '" + options.directory +
                         "' holds a study, whose page is study.html beside its table. "
                         "Leave out --output and --steps, or name a run in its members/."});
+    // It asks the program for closed forms between the members.
+    given.insert(given.end(),
+                 {"--program", std::filesystem::read_symlink("/proc/self/exe")});
     return run_script("study_page.py", given);
   }
   if (!options.page.empty())
