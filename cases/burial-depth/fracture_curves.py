@@ -4,14 +4,15 @@
     antiform study cases/burial-depth/study-fracture.prm -o DIRECTORY
     /usr/bin/python3 cases/burial-depth/fracture_curves.py DIRECTORY [--maps CONTRAST]
 
-Draws peak stress (theory beside it), fold, cracks and spacing against H/h, and the
-fractures of five layers of one contrast. Writes fracture_curves.png and the tables
-fracture_curves.md.
+Draws peak stress (theory beside it), fold, cracks and spacing against H/h and Theta, and
+the fractures of five layers of one contrast. Writes fracture_curves.png and the tables
+fracture_curves.md. Closed forms are those of 'antiform theory'.
 """
 import argparse
 import glob
 import json
 import os
+import shutil
 import sys
 
 import matplotlib
@@ -23,8 +24,10 @@ from matplotlib.lines import Line2D
 from PIL import Image  # comes with matplotlib
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from depth_axis import add_theta_axes  # noqa: E402
 from picture_style import DPI, SHEAR_CRACK, TENSION_CRACK  # noqa: E402
 from run_files import Grid, read_deck, read_table  # noqa: E402
+from theory_lines import TheoryError, theory_along  # noqa: E402
 
 COLOURS = ("#b5651d", "#2e8b57", "#1f4fa8", "#7b3294")  # of the contrasts, ascending
 MARKERS = {"surface interface": "o", "grain cover": "s", "bridging domain": "^"}
@@ -34,6 +37,8 @@ SPLITTING = "#f4a582"
 MAPS = (0.01, 0.1, 1., 10., 100.)
 MECHANISMS = {1: "crushes", 2: "folds and cracks", 3: "buckles"}
 STRETCH = 4.  # of the maps' heights
+COVERS = np.geomspace(0.01, 100., 81)  # H/h of the closed forms
+GUIDED = "theory_at_length_{}_guided_Pa"
 
 
 def members_of(directory):
@@ -64,8 +69,7 @@ def members_of(directory):
             "contrast": float(deck["Matrix/Stiffness contrast"]),
             "h": float(deck["Layer/Thickness"]), "UCS": float(deck["Layer/UCS"]),
             "asked": member["values"].get("join", "automatic"),
-            "crushing": figures.get("theory_at_length_perry_robertson_guided_Pa"),
-            "buckling": figures.get("theory_at_length_with_matrix_guided_Pa"),
+            "crushing": figures.get(GUIDED.format("perry_robertson")),
             "closure": summary["energy"]["closure_error"],
             "seconds": summary["cpu_seconds"]})
     if not members:
@@ -127,7 +131,25 @@ def write_row(axes, of, row, colour):
         word(H, f"{100. * jump:+.1f} %", ha="center")
 
 
-def draw_curves(members, axes):
+def draw_theory(program, contrasts, members, axes):
+    """Closed forms at every cover of a layer of each contrast, and Theta above."""
+    ratios = []
+    for colour, contrast in zip(COLOURS, contrasts):
+        deck = next(m["folder"] for m in members if m["contrast"] == contrast) + ".prm"
+        try:
+            forms = theory_along(program, deck, {"Matrix/Burial depth ratio": COVERS})
+        except TheoryError as error:
+            print(f"no closed forms: {error}", file=sys.stderr)
+            continue
+        for name, line in (("perry_robertson", "--"), ("with_matrix", ":")):
+            axes.plot(COVERS, 1e-6 * forms[GUIDED.format(name)], color=colour,
+                      linewidth=1.1, linestyle=line)
+        ratios.append((forms["theory_regime_theta"][-1] / COVERS[-1], colour))
+    axes.set_xscale("log")
+    add_theta_axes(axes, ratios)
+
+
+def draw_curves(program, members, axes):
     contrasts = sorted({m["contrast"] for m in members})
     stress, fold, dip, cracks, spacing = axes
     strength = 1e-6 * members[0]["UCS"]
@@ -135,14 +157,9 @@ def draw_curves(members, axes):
     stress.annotate(r"$\gamma=1$: UCS", (0.0075, strength), xytext=(0, 3), fontsize=9,
                     textcoords="offset points")
     highest = max(m["results"]["peak_stress"] for m in members)
+    draw_theory(program, contrasts, members, stress)
     for row, (colour, contrast) in enumerate(zip(COLOURS, contrasts)):
         of = [m for m in members if m["contrast"] == contrast]
-        line = sorted({(m["H"], m["crushing"], m["buckling"]) for m in of
-                       if m["crushing"]})
-        if line:
-            H, crushing, buckling = np.array(line).T
-            stress.plot(H, 1e-6 * crushing, color=colour, linewidth=1.1, linestyle="--")
-            stress.plot(H, 1e-6 * buckling, color=colour, linewidth=1.1, linestyle=":")
         curve(stress, of, lambda m: 1e-6 * m["results"]["peak_stress"], colour)
         write_row(stress, of, row, colour)
         curve(fold, of, lambda m: m["results"]["fold_amplitude_at_peak"] / m["h"], colour)
@@ -174,7 +191,7 @@ def draw_curves(members, axes):
                 Line2D([], [], color="#555555", linestyle=":",
                        label="closed form: elastic buckling")]
     stress.legend(handles=handles, frameon=False, fontsize=8.5, ncol=3,
-                  loc="lower center", bbox_to_anchor=(0.5, 0.995), columnspacing=1.2)
+                  loc="lower center", bbox_to_anchor=(0.5, 1.33), columnspacing=1.2)
 
 
 def deformed_layer(folder):
@@ -235,18 +252,18 @@ def draw_map(member, axes):
               fontsize=8.5, va="bottom", ha="right", color="#444444")
 
 
-def draw(members, contrast, directory):
+def draw(program, members, contrast, directory):
     mapped = [next((m for m in members if m["contrast"] == contrast and m["H"] == H),
                    None) for H in MAPS]  # the chosen representation comes first
     mapped = [m for m in mapped if m is not None]
-    figure = plt.figure(figsize=(12.6, 8.2))
-    left = figure.add_gridspec(5, 1, left=0.065, right=0.475, top=0.815, bottom=0.065,
+    figure = plt.figure(figsize=(12.6, 9.))
+    left = figure.add_gridspec(5, 1, left=0.065, right=0.475, top=0.765, bottom=0.065,
                                height_ratios=[2.6, 1., 1., 1., 1.], hspace=0.13)
     axes = [figure.add_subplot(left[0])]
     axes += [figure.add_subplot(left[k], sharex=axes[0]) for k in range(1, 5)]
     for panel in axes[:-1]:
         panel.tick_params(labelbottom=False)
-    draw_curves(members, axes)
+    draw_curves(program, members, axes)
     right = figure.add_gridspec(max(1, len(mapped)), 1, left=0.515, right=0.985, top=0.84,
                                 bottom=0.03, hspace=0.2)
     for k, member in enumerate(mapped):
@@ -303,10 +320,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("directory", help="of the study; for the picture too")
     parser.add_argument("--maps", type=float, help="contrast of the maps (the highest)")
+    parser.add_argument("--antiform", default=shutil.which("antiform") or "antiform",
+                        help="the program, for the closed forms")
     arguments = parser.parse_args()
     members = members_of(arguments.directory)
     report(members, arguments.directory)
-    draw(members, arguments.maps or max(m["contrast"] for m in members),
+    draw(arguments.antiform, members, arguments.maps or max(m["contrast"] for m in members),
          arguments.directory)
 
 
