@@ -5,7 +5,8 @@
 
 The first run is what the others are held against. Runs whose decks differ in seeds alone are
 one row: their mean, and a difference is called more than scatter where it exceeds twice its
-standard error; two packings of one deck are needed for that. Writes comparison.html, comparison.csv and comparison.json.
+standard error; two packings of one deck are needed for that. Writes comparison.html,
+comparison.csv and comparison.json.
 """
 
 import argparse
