@@ -1,5 +1,6 @@
 """What 'antiform study' has left: its members, and which of its entries is the axis."""
 
+import itertools
 import json
 import os
 import sys
@@ -105,17 +106,20 @@ class Study:
     def samples(self, key):
         """Columns of the closed forms along the curve @p key by the program, candidates: as
         the first member's scene with another value of the axis; the same with numbers
-        that are zipped to the axis between their neighbours'. Found once."""
-        if key not in self.samples_:
-            self.samples_[key] = list(self.sampled(key)) if self.program else []
-        return self.samples_[key]
+        that are zipped to the axis between their neighbours'. Each is found once, when it
+        is asked for."""
+        found, others = self.samples_.setdefault(key, ([], self.sampled(key)))
+        yield from found
+        for sample in others:
+            found.append(sample)
+            yield sample
 
     def sampled(self, key):
         of = sorted((m for m in self.members if self.key_of(m) == key),
                     key=lambda m: number(m["values"][self.axis]))
         at = np.array([number(m["values"][self.axis]) for m in of])
         deck = os.path.join(self.directory, "members", of[0]["name"] + ".prm")
-        if len(np.unique(at)) < 2 or not os.path.exists(deck):
+        if not self.program or len(np.unique(at)) < 2 or not os.path.exists(deck):
             return
         between = np.geomspace if is_logarithmic(at) else np.linspace
         x = np.unique(np.concatenate([at, between(at[0], at[-1], MOST_SAMPLES)]))
@@ -141,12 +145,12 @@ class Study:
         at, values = points
         columns = BY_THEORY.get(figure["name"], [figure["column"]])
         # Those of another curve often serve this one too.
-        for samples in [*self.samples_.values(), None]:
-            for x, lines in self.samples(key) if samples is None else samples:
-                for line in (lines[c] for c in columns if c in lines):
-                    if np.isin(at, x).all() and np.allclose(np.interp(at, x, line), values,
-                                                            rtol=SAME, atol=0.):
-                        return x, line
+        of_others = [sample for found, _ in self.samples_.values() for sample in found]
+        for x, lines in itertools.chain(of_others, self.samples(key)):
+            for line in (lines[c] for c in columns if c in lines):
+                if np.isin(at, x).all() and np.allclose(np.interp(at, x, line), values,
+                                                        rtol=SAME, atol=0.):
+                    return x, line
         self.missed = self.missed or len(np.unique(at)) > 1
         at, which = np.unique(at, return_index=True)
         return self.with_gaps(at, values[which])
