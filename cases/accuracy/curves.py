@@ -32,20 +32,29 @@ FINER = {"grains-fine": ("grains", "Layer/Grains across = 30, 30, 30, 40, 40, 40
          "rate-slow": ("rate", "Walls/Transits per millistrain = 800 ; "
                        "Layer/Seed = seeds 1 to 3"),
          "specimen-events": ("specimen-rate", "Walls/Loading = event driver ; "
-                             "Layer/Seed = seeds 1 to 10")}
-STUDIES = ("grains", "strength", "balance", "rate", "specimen-rate", "relaxation", "damping",
-           "cells", "overlap", "joins", "elements", *FINER)
+                             "Layer/Seed = seeds 1 to 10"),
+         "slender-events": ("slender-rate", "Walls/Balance tolerance = 9e-3, 3e-3, 1e-3, "
+                            "3e-4 ; Layer/Seed = seeds 1 to 3",
+                            "Walls/Loading=event driver")}
+STUDIES = ("grains", "strength", "balance", "rate", "specimen-rate", "slender-rate",
+           "relaxation", "damping", "cells", "overlap", "joins", "elements", *FINER)
+# The layer of slender-rate.prm, seed 1, at other walls: transits per millistrain, peak [Pa]
+# and steps by the table in cases/shortening/README.md.
+OTHER_WALLS = ((282., 31.24e6, 293121), (940., 26.36e6, 785313), (1880., 24.29e6, 1331617),
+               (3760., 22.38e6, 2355799), (7520., 21.34e6, 4370177))
 MACHINE = "AMD EPYC (shared)"  # no commas in the record
 PEAK, CRITICAL = "peak_stress_Pa", "critical_stress_Pa"
 
 
 def make(antiform, directory, name):
     """The study, gone on with where it was left; its lines."""
-    deck, extra = FINER.get(name, (name, None))
+    deck, *extra = FINER.get(name, (name,))
     command = [antiform, "study", os.path.join(HERE, deck + ".prm"), "-o",
                os.path.join(directory, name), "--jobs", "1"]
     if extra:
-        command += ["--set", "Study/Vary=" + extra]
+        command += ["--set", "Study/Vary=" + extra[0]]
+    for entry in extra[1:]:
+        command += ["--set", entry]
     done = subprocess.run(command, env={**os.environ, "ANTIFORM_CACHE": "off",
                                         "OMP_THREAD_LIMIT": "1"})
     if done.returncode not in (0, 2):
@@ -66,11 +75,15 @@ def lines_of(directory, name):
 
 
 class Knob:
-    """Errors of one entry's values, packing by packing."""
+    """Errors of one entry's values, packing by packing: a curve in a panel, which others of
+    the same panel share. They speak of layers with L/h of up to @p largest_length_ratio."""
 
-    def __init__(self, name, entry, of, truth, default=None, label=None):
+    def __init__(self, name, entry, of, truth, default, panel=None, curve="",
+                 largest_length_ratio="any"):
         self.name, self.entry, self.of, self.truth = name, entry, of, truth
-        self.default, self.label = default, label or entry.split("/")[-1].lower()
+        self.default, self.panel = default, panel or entry.split("/")[-1].lower()
+        self.curve, self.largest_length_ratio = curve, largest_length_ratio
+        self.label = self.panel + (", " + curve if curve else "")
         self.rows = []
 
     def add(self, value, errors, lines):
@@ -79,13 +92,15 @@ class Knob:
         if len(errors) == 1 and self.rows:
             scatter = 0.01 * self.rows[-1]["scatter_percent"]
         self.rows.append({
-            "knob": self.name, "entry": self.entry, "value": f"{value:g}",
+            "knob": self.name, "entry": self.entry,
+            "value": value if isinstance(value, str) else f"{value:g}",
             "error_percent": round(100. * statistics.mean(errors), 4) + 0.,  # no -0
             "scatter_percent": round(100. * scatter, 4), "packings": len(errors),
             "cpu_seconds": round(statistics.median(l["cpu_seconds"] for l in lines), 3),
             "grains": round(statistics.mean(l.get("sizes_grains", 0.) for l in lines)),
             "default": "yes" if value == self.default else "no", "of": self.of,
-            "truth": self.truth, "measured": f"{datetime.date.today()} {MACHINE}"})
+            "truth": self.truth, "largest_length_ratio": self.largest_length_ratio,
+            "measured": f"{datetime.date.today()} {MACHINE}"})
 
     def by(self, column, lines, quantity, truth_of, coarse_to_fine):
         """A row of each value of @p column; truth_of(line) is what it should be, None where
@@ -144,41 +159,66 @@ def grains_knobs(studies):
     return knobs
 
 
-def loading_knobs(studies):
-    events = "the event driver at a tolerance of 1e-4 (same packings)"
-    balance = studies["balance"]
-    finest = [line for line in balance if line["balance_tolerance"] == 1e-4]
-    truth = paired(finest, PEAK, "seed")
+def rate_and_balance(rates, balance, **scene):
+    """Of one layer: what its walls' speed does, and the tolerance of its event driver; the
+    truth of both."""
+    *tolerances, finest = sorted({line["balance_tolerance"] for line in balance})[::-1]
+    truth = paired([line for line in balance if line["balance_tolerance"] == finest], PEAK,
+                   "seed")
     of = "peak stress of a bent layer"
-    knobs = [
-        Knob("loading rate of a layer", "Walls/Transits per millistrain", of, events,
-             300., "loading rate of a bent layer").by(
-            "transits_per_millistrain", studies["rate"] + studies["rate-slow"], PEAK, truth,
-            (50., 100., 200., 300., 400., 800.)),
-        Knob("loading rate of a specimen", "Walls/Transits per millistrain",
-             "peak stress of a specimen", "the event driver (same packings)", 300.,
-             "loading rate of a specimen").by(
+    finest_text = f"{finest:.0e}".replace("e-0", "e-")
+    words = f"the event driver at a tolerance of {finest_text} (same packings)"
+    return (Knob("loading rate of a layer", "Walls/Transits per millistrain", of, words,
+                 300., "loading rate of a bent layer", **scene).by(
+                     "transits_per_millistrain", rates, PEAK, truth,
+                     sorted({line["transits_per_millistrain"] for line in rates})),
+            Knob("balance tolerance", "Walls/Balance tolerance", of, words, 1e-3,
+                 **scene).by("balance_tolerance", balance, PEAK, truth, tolerances), truth)
+
+
+def add_other_walls(rate, line, truth, scatter):
+    """Those of the table to the knob @p rate, which has @p line, of 300 transits. All are of
+    one packing, which tells nothing of their @p scatter [%]; seconds follow from the steps,
+    as many as the transits."""
+    seconds = line["cpu_seconds"] / (OTHER_WALLS[0][2] * 300. / OTHER_WALLS[0][0])
+    for transits, peak, steps in OTHER_WALLS:
+        rate.add(transits, [peak / truth(line) - 1.],
+                 [{**line, "cpu_seconds": seconds * steps}])
+    rate.rows.sort(key=lambda row: float(row["value"]))
+    for row in rate.rows:
+        row["scatter_percent"] = scatter
+
+
+def loading_knobs(studies):
+    rate, balance, truth = rate_and_balance(
+        studies["rate"] + studies["rate-slow"], studies["balance"], curve="L/h = 12",
+        largest_length_ratio=12)
+    slender, its_balance, its_truth = rate_and_balance(
+        studies["slender-rate"], studies["slender-events"], curve="L/h = 33.7",
+        largest_length_ratio=33.8)
+    add_other_walls(slender, studies["slender-rate"][0], its_truth,
+                    max(row["scatter_percent"] for row in rate.rows))
+    specimen = Knob(
+        "loading rate of a specimen", "Walls/Transits per millistrain",
+        "peak stress of a specimen", "the event driver (same packings)", 300.,
+        "loading rate of a specimen", largest_length_ratio=4).by(
             "transits_per_millistrain", studies["specimen-rate"], PEAK,
             paired(studies["specimen-events"], PEAK, "seed"),
-            (5., 10., 25., 50., 100., 200., 300., 400.)),
-        Knob("balance tolerance", "Walls/Balance tolerance", of, events, 1e-3).by(
-            "balance_tolerance", balance, PEAK, truth, (9e-3, 3e-3, 1e-3, 3e-4))]
-    stepped = studies["relaxation"]
-    knobs.append(Knob("load step", "Walls/Load step", of, events, 4e-5).by(
-        "load_step", [l for l in stepped if l["relaxation_tolerance"] == 1e-4], PEAK, truth,
-        (1.6e-4, 8e-5, 4e-5)))
-    knobs.append(Knob("relaxation tolerance", "Walls/Relaxation tolerance", of, events,
-                      1e-4).by(
-        "relaxation_tolerance", [l for l in stepped if l["load_step"] == 4e-5], PEAK, truth,
-        (1e-2, 1e-3, 1e-4)))
-    damped = studies["damping"]
-    knobs.append(Knob("damping", "Damping/Coefficient", of, events, 0.7,
-                      "damping coefficient").by(
-        "coefficient", [l for l in damped if l["step_safety"] == 0.9], PEAK, truth,
-        (0.9, 0.7, 0.5, 0.3)))
-    knobs.append(Knob("step safety", "Run/Step safety", of, events, 0.9).by(
-        "step_safety", [l for l in damped if l["coefficient"] == 0.7], PEAK, truth,
-        (0.9, 0.3)))
+            (5., 10., 25., 50., 100., 200., 300., 400.))
+    of, stepped, damped = rate.of, studies["relaxation"], studies["damping"]
+    knobs = [rate, slender, specimen, balance, its_balance]
+    for name, entry, default, panel, lines, values in (
+            ("load step", "Walls/Load step", 4e-5, None,
+             [l for l in stepped if l["relaxation_tolerance"] == 1e-4], (1.6e-4, 8e-5, 4e-5)),
+            ("relaxation tolerance", "Walls/Relaxation tolerance", 1e-4, None,
+             [l for l in stepped if l["load_step"] == 4e-5], (1e-2, 1e-3, 1e-4)),
+            ("damping", "Damping/Coefficient", 0.7, "damping coefficient",
+             [l for l in damped if l["step_safety"] == 0.9], (0.9, 0.7, 0.5, 0.3)),
+            ("step safety", "Run/Step safety", 0.9, None,
+             [l for l in damped if l["coefficient"] == 0.7], (0.9, 0.3))):
+        column = entry.split("/")[1].lower().replace(" ", "_")
+        knobs.append(Knob(name, entry, of, rate.truth, default, panel,
+                          largest_length_ratio=12).by(column, lines, PEAK, truth, values))
     return knobs
 
 
@@ -202,17 +242,19 @@ def join_knobs(studies):
              "buffer width").by(
             "buffer_width_ratio", [l for l in overlap if l["overlap_width_ratio"] == 8.],
             CRITICAL, at_100, (1., 4., 8.))]
-    for name, entry, is_it in (
-            ("representation: continuum", "Layer/Representation",
-             lambda l: l["layer_representation"] == "continuum"),
-            ("representation: surface interface", "Matrix/Join",
-             lambda l: l["join"] == "surface interface"),
-            ("representation: bridging domain", "Matrix/Join",
-             lambda l: l["matrix_representation"] == "continuum"
-             and l["layer_representation"] == "grains" and l["join"] == "bridging domain")):
-        knobs.append(Knob(name, "Matrix/Stiffness contrast", of, words, None, name).by(
-            "stiffness_contrast", [l for l in studies["joins"] if is_it(l)], CRITICAL,
-            truth, (20., 100., 1e4)))
+    for contrast in (20., 100., 1e4):
+        knob = Knob(f"representation at a contrast of {contrast:g}", "Matrix/Join", of, words,
+                    "overlap", "representation", f"contrast {contrast:g}")
+        ways = [(way, [l for l in studies["joins"] if is_it(l)
+                       and l["stiffness_contrast"] == contrast]) for way, is_it in (
+            ("elements", lambda l: l["layer_representation"] == "continuum"),
+            ("surface", lambda l: l["join"] == "surface interface"),
+            ("overlap", lambda l: l["matrix_representation"] == "continuum"
+             and l["layer_representation"] == "grains" and l["join"] == "bridging domain"))]
+        for way, lines in sorted(ways, key=lambda pair: statistics.median(
+                line["cpu_seconds"] for line in pair[1])):
+            knob.add(way, [l[CRITICAL] / truth(l) - 1. for l in lines], lines)
+        knobs.append(knob)
     return knobs
 
 
@@ -221,41 +263,53 @@ def element_knobs(studies):
     for line in lines:
         line["cell"] = line["cell_size_ratio"] / 4.  # over the layer's thickness
     fine = {line["cell"]: line[CRITICAL] for line in lines if line["element_degree"] == 2.}
-    cells = sorted(fine)
-    limit = fine[cells[0]] + (fine[cells[0]] - fine[cells[1]]) / (2. ** 4 - 1.)
-    return [Knob(name, "Matrix/Cell size ratio", "critical stress of a buried layer",
-                 "the limit of the two finest quadratic meshes", None, name).by(
+    least = min(fine)
+    limit = fine[least] + (fine[least] - fine[2. * least]) / (2. ** 4 - 1.)
+    cells = sorted({line["cell"] for line in lines}, reverse=True)
+    default = min(cells, key=lambda cell: abs(cell - 2. / 12.))  # 2 of 12 diameters
+    return [Knob(name + " cells", "Matrix/Cell size ratio", "critical stress of a buried "
+                 "layer", "the limit of the two finest quadratic meshes", default,
+                 "finite elements, cells over h", name).by(
         "cell", [l for l in lines if l["element_degree"] == degree], CRITICAL,
-        lambda line: limit, sorted({l["cell"] for l in lines
-                                    if l["element_degree"] == degree}, reverse=True))
-        for name, degree in (("bilinear cells", 1.), ("quadratic cells", 2.))]
+        lambda line: limit, cells) for name, degree in (("bilinear", 1.), ("quadratic", 2.))]
 
 
 def where_not_monotone(knob):
     """Neighbours of which the dearer one is further off, beyond their standard errors."""
-    if knob.name.startswith("representation"):
-        return  # its values are scenes
     for coarse, fine in zip(knob.rows, knob.rows[1:]):
         known = math.hypot(*(row["scatter_percent"] / math.sqrt(row["packings"])
                              for row in (coarse, fine)))
         rise = abs(fine["error_percent"]) - abs(coarse["error_percent"])
         if rise > 2. * known:
-            yield (f"{knob.name}: {coarse['value']} to {fine['value']}: error "
+            yield (f"{knob.label}: {coarse['value']} to {fine['value']}: error "
                    f"{coarse['error_percent']:+.2f} to {fine['error_percent']:+.2f} %")
 
 
 # Where labels stand that others would cover, in points from their marks.
-PLACES = {("damping", "0.5"): (-22, -3), ("damping", "0.3"): (-22, -3),
+PLACES = {("damping", "0.7"): (9, -12),
+          ("representation at a contrast of 20", "elements"): (-46, -3),
+          ("representation at a contrast of 20", "surface"): (6, 2),
+          ("representation at a contrast of 20", "overlap"): (-20, 11),
+          ("representation at a contrast of 100", "elements"): (-46, -3),
+          ("representation at a contrast of 100", "surface"): (6, -3),
+          ("representation at a contrast of 100", "overlap"): (-14, -18),
+          ("representation at a contrast of 10000", "overlap"): (-50, -6),
+          ("loading rate of a layer", "282"): (6, 4),
+          ("loading rate of a layer", "940"): (4, 6),
+          ("damping", "0.5"): (-22, -3), ("damping", "0.3"): (-22, -3),
           ("balance tolerance", "0.0003"): (-24, 8),
-          ("representation: continuum", "100"): (-24, -6),
-          ("representation: continuum", "20"): (-20, -4),
-          ("representation: surface interface", "100"): (6, -4),
-          ("representation: bridging domain", "10000"): (-38, -4),
-          ("representation: bridging domain", "100"): (4, -12),
           ("grains in bending", "10"): (6, 1), ("grains in stiffness", "10"): (6, 1),
           ("loading rate of a specimen", "25"): (-14, -11),
           ("buffer", "1"): (6, -4), ("load step", "8e-05"): (-32, -4),
           ("bilinear cells", "0.1"): (-6, -14), ("bilinear cells", "0.05"): (-10, -14)}
+
+
+def shown(row):
+    """Its value, short."""
+    try:
+        return f"{float(row['value']):.3g}" if len(row["value"]) > 6 else row["value"]
+    except ValueError:
+        return row["value"]
 
 
 def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
@@ -268,11 +322,11 @@ def draw_one(axes, knob, colour="#1f4fa8", marker="o"):
                               [b - a for a, b in zip(y, high)]],
                   color=colour, marker=marker, markersize=5, markerfacecolor="white",
                   markeredgewidth=1.4, linewidth=1.2, elinewidth=0.8, capsize=2,
-                  label=knob.label)
+                  label=knob.curve)
     for a, b, row in zip(x, y, rows):
         default = row["default"] == "yes"
         place = PLACES.get((knob.name, row["value"]), (-17, -14) if default else (5, 4))
-        axes.annotate(row["value"], (a, b), textcoords="offset points", xytext=place,
+        axes.annotate(shown(row), (a, b), textcoords="offset points", xytext=place,
                       fontsize=8, color=colour)
         if default:
             axes.plot([a], [b], marker="o", markersize=13, markerfacecolor="none",
@@ -293,10 +347,8 @@ def with_plain_ticks(axes, least_x=4., least_y=20.):
 
 
 def draw(knobs, directory):
-    panels = [[k] for k in knobs if not k.name.startswith("representation")
-              and "linear" not in k.name and "quadratic" not in k.name]
-    panels.append([k for k in knobs if k.name in ("bilinear cells", "quadratic cells")])
-    panels.append([k for k in knobs if k.name.startswith("representation")])
+    panels = [[k for k in knobs if k.panel == panel]
+              for panel in dict.fromkeys(k.panel for k in knobs)]
     columns = 3
     lines = -(-len(panels) // columns)
     figure, axes = plt.subplots(lines, columns, figsize=(11.4, 2.75 * lines + 0.7))
@@ -307,13 +359,10 @@ def draw(knobs, directory):
         place.grid(color="#dddddd", linewidth=0.6)
         place.margins(x=0.2, y=0.15)
         with_plain_ticks(place)
-        if len(of) == 1:
-            place.set_title(of[0].label, fontsize=10, loc="left")
-        else:
-            place.set_title("finite elements, cell over h" if "cells" in of[0].name
-                            else "representation, by contrast", fontsize=10, loc="left")
-            place.legend([k.label.replace("representation: ", "") for k in of],
-                         frameon=False, fontsize=8, loc="best")
+        place.set_title(of[0].panel, fontsize=10, loc="left")
+        if len(of) > 1:
+            place.legend(frameon=False, fontsize=8, loc="lower right" if "rate" in of[0].panel
+                         else "lower left" if "tolerance" in of[0].panel else "best")
         place.tick_params(labelsize=8)
     for place in axes.flat[len(panels):]:
         place.set_visible(False)
@@ -340,9 +389,10 @@ def tables(knobs):
                  "| --- | --- | --- | --- | --- | --- |\n")
         for row in knob.rows:
             mark = " (default)" if row["default"] == "yes" else ""
-            text += (f"| {row['value']}{mark} | {row['error_percent']:+.3g} % | "
+            text += (f"| {shown(row)}{mark} | {row['error_percent']:+.3g} % | "
                      f"{row['scatter_percent']:.2g} % | {row['packings']} | "
-                     f"{row['grains']:,} | {row['cpu_seconds']:.2g} |\n")
+                     f"{row['grains']:,} | "
+                     f"{float(format(row['cpu_seconds'], '.2g')):g} |\n")
         text += "\n"
     return text
 

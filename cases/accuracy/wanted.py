@@ -3,7 +3,7 @@
 
     /usr/bin/python3 cases/accuracy/wanted.py ANTIFORM
 
-What 'antiform check' chooses by the record for five scenes, with the core seconds that it
+What 'antiform check' chooses by the record for eight scenes, with the core seconds that it
 predicts; no run is made.
 """
 import argparse
@@ -16,6 +16,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BENT, BURIED = os.path.join(HERE, "wanted.prm"), os.path.join(HERE, "wanted-buried.prm")
 SCENES = (("bent layer, event driver", BENT, []),
           ("bent layer, walls at a constant rate", BENT, ["Walls/Loading=constant rate"]),
+          ("bent layer of L/h = 33.7, event driver", BENT, ["Layer/Length ratio=33.7"]),
+          ("bent layer of L/h = 33.7, walls at a constant rate", BENT,
+           ["Layer/Length ratio=33.7", "Walls/Loading=constant rate"]),
           ("specimen, event driver", BENT, ["Layer/Shape=straight", "Layer/Length ratio=2"]),
           ("specimen, walls at a constant rate", BENT,
            ["Layer/Shape=straight", "Layer/Length ratio=2", "Walls/Loading=constant rate"]),

@@ -253,6 +253,42 @@ TEST(Accuracy, ChoosesNoRateForLayersMoreSlenderThanTheRecord)
   }
 }
 
+// cases/shortening/README.md, L/h = 33.7, 10.43 grains across: 31.24 MPa at 282 transits,
+// 26.36 at 940 and 21.34 at 7520, which is not the limit yet. So 282 are off by 46 % at
+// least, 940 by 23 %; and by no more than twice that, since each doubling changes less.
+TEST(Accuracy, SlenderLayersNeedSlowerWalls)
+{
+  const Scratch scratch;
+  const std::string deck = scratch.write("bent.prm", bent);
+  const auto error_at = [&](const std::string &length, const std::string &transits)
+  {
+    const Parameters p = read_deck(deck, {"Accuracy=100 %", "Layer/Length ratio=" + length,
+                                          rate + "=" + transits});
+    return find(p.accuracy, rate)->error.value_or(-1.);
+  };
+  for (const auto &[transits, least] : {std::pair{"282", 0.464}, std::pair{"940", 0.235}})
+  {
+    EXPECT_GT(error_at("33.7", transits), least) << transits;
+    EXPECT_LT(error_at("33.7", transits), 2. * least) << transits;
+    // Between two records that of the more slender layer is on the safe side.
+    EXPECT_EQ(error_at("20", transits), error_at("33.7", transits)) << transits;
+  }
+  EXPECT_LT(error_at("12", "282"), 0.04);
+
+  const std::vector<std::string> problems =
+      problems_of(deck, {"Accuracy=10 %", "Layer/Length ratio=33.7", rate + "=282"});
+  ASSERT_EQ(problems.size(), 1u);
+  for (const std::string &text : {"'" + rate + "' = 282 is off by",
+                                  std::string("'Walls/Loading = event driver'")})
+    EXPECT_NE(problems[0].find(text), std::string::npos) << problems[0];
+  // The event driver reaches it.
+  const Parameters events =
+      read_deck(deck, {"Accuracy=10 %", "Layer/Length ratio=33.7",
+                       "Walls/Loading=event driver"});
+  EXPECT_LE(events.accuracy.sum_of_errors(), 0.1);
+  EXPECT_TRUE(events.accuracy.warnings().empty());
+}
+
 TEST(Accuracy, EffectiveDeckGivesTheSame)
 {
   const Scratch scratch;
