@@ -170,6 +170,7 @@ TEST(Study, WaitsForARunThatAKilledStudyHasLeft)
   // As when a study is killed whose member does not hear of it.
   const std::vector<std::string> one =
       unbreakable({"Run/End shortening=6e-3", "Run/Longest shortening=1e-2",
+                   "Walls/Transits per millistrain=60", // outlasts the study's beginning
                    "Study/Vary=Layer/Seed = 1"});
   const TemporaryFolder folder;
   const std::string out = folder.path("out"), member = out + "/members/seed-1";
