@@ -138,8 +138,9 @@ double parting_strain(const Parameters &p)
 
 double longest_load_step(const Parameters &p)
 {
-  return p.walls.pulls() ? std::min(p.walls.load_step, finest_load_step * parting_strain(p))
-                         : p.walls.load_step;
+  if (!p.walls.pulls())
+    return p.walls.load_step;
+  return std::min(p.walls.load_step, finest_load_step * parting_strain(p));
 }
 
 double predict_strain_at_peak(const Parameters &p, const SectionGeometry &g)

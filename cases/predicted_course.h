@@ -24,8 +24,8 @@ double side_pressure(const Parameters &parameters);
 double predict_strain_at_peak(const Parameters &parameters,
                               const SectionGeometry &geometry);
 
-/// The event driver's longest: that of the deck, but where walls pull short enough for the
-/// strength, which lies within one of its records [-].
+/// The event driver's longest: that of the deck, but where walls pull short enough for
+/// the strength, which lies within one of its records [-].
 double longest_load_step(const Parameters &parameters);
 /// Half of it; where it is long, so that events end most steps, short enough for the
 /// strength of any body [-].

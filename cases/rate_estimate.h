@@ -10,7 +10,7 @@ namespace antiform::cases
 {
 struct Summary;
 
-/// What is halved: the loading rate; or, without time, load step and tolerance of balance.
+/// What is halved: the loading rate; or, without time, load step and tolerance.
 struct Halving
 {
   explicit Halving(const Parameters &parameters)
@@ -35,8 +35,8 @@ struct RateEstimate
 };
 
 /// Deck of the repetition: half the rate, half the load step and relaxation tolerance, or
-/// half the event driver's load step (half_load_step()) and tolerance; ends once the stress has fallen by a
-/// tenth.
+/// half the event driver's load step (half_load_step()) and tolerance; ends once the
+/// stress has fallen by a tenth.
 Parameters at_half_rate(const Parameters &parameters);
 
 /// The states of the last rises of the stress by a tenth, each a checkpoint of the run at

@@ -129,8 +129,8 @@ void check_buckling_of_grains(const Parameters &p, Findings &findings)
   for (const char *pressing : {"servo walls", "membrane"})
     if (p.has(pressing))
       find({"Components", "Run/Driver"},
-           std::string("knows one load, the shortening by the walls. Remove ") + pressing +
-               " from 'Components'.");
+           std::string("knows one load, the shortening by the walls. Remove ") +
+               pressing + " from 'Components'.");
   if (p.is_bridged() && !p.bridging.constraint)
     find({"Bridging domain/Constraint", "Run/Driver"},
          "would find the cover loose. Give true.");

@@ -160,8 +160,9 @@ void SteppedRun::keep_state_before_peak()
 {
   const double stress = recorder_->peak_stress();
   // A body may break as a whole at its first crack: then its first load step counts.
-  const bool is_first_load_step =
-      scene_->events != nullptr && scene_->events->load() > 0. && before_peak_->is_empty();
+  const bool is_first_load_step = scene_->events != nullptr &&
+                                  scene_->events->load() > 0. &&
+                                  before_peak_->is_empty();
   if (!before_peak_->wants(stress,
                            is_first_load_step || !scene_->grains->state.cracks.empty()))
     return;
@@ -257,8 +258,8 @@ int SteppedRun::estimate_rate_error()
     no_estimate_ =
         std::string("there is no estimate of the loading-rate error: ") +
         (recorder_->has_passed_peak()
-             ? "the first crack came at 0.95 of the peak or later, and what to go on from "
-               "is kept from there on. Run again as a whole at half the rate"
+             ? "the first crack came at 0.95 of the peak or later, and what to go on "
+               "from is kept from there on. Run again as a whole at half the rate"
              : "the run has not passed a peak. Let it go on: raise 'Run/End shortening' "
                "or 'Run/Longest shortening'");
     return 0;

@@ -191,7 +191,8 @@ TEST(BucklingOfGrains, RefusesWhatIsNotLinear)
        {"'Matrix/Refinement rounds' = '2'", "'Bridging domain/Constraint' = 'false'"}},
       {{"Components=layer, walls, membrane", "Membrane/Pressure=1e6"},
        {"Remove membrane from"}},
-      {{"Components=layer, walls", "Walls/Action=pull"}, {"'Walls/Action'", "Give press"}}};
+      {{"Components=layer, walls", "Walls/Action=pull"},
+       {"'Walls/Action'", "Give press"}}};
   for (const auto &one : cases)
   {
     const Outcome outcome =
