@@ -101,11 +101,12 @@ AccuracyCurve accuracy_curve(const std::string &knob, const double length_ratio)
     if (line.at("knob") == knob)
     {
       curve.entry = line.at("entry");
+      if (largest_length_ratio(line) != scene)
+        continue;
       curve.of = line.at("of");
       curve.truth = line.at("truth");
-      if (largest_length_ratio(line) == scene)
-        curve.rows.push_back(
-            {line.at("value"), largest_error(line), number(line, "cpu_seconds")});
+      curve.rows.push_back(
+          {line.at("value"), largest_error(line), number(line, "cpu_seconds")});
     }
   if (curve.entry.empty())
     throw std::logic_error("the record has no '" + knob + "'");

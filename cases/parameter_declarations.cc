@@ -437,8 +437,8 @@ void declare_parameters(Parameters &p,
   entries.percentage(
       "Accuracy", p.accuracy.percent,
       "Error wanted, as 5 %: grains across, cells, overlap, loading rate or tolerances "
-      "that the deck does not set are chosen from what has been measured "
-      "(docs/accuracy.md). Empty: nothing is chosen.");
+      "that the deck does not set are chosen from what has been measured, for what the "
+      "errors of those that it sets leave (docs/accuracy.md). Empty: nothing is chosen.");
   for (const std::string &section : sections)
   {
     if (section == "Layer")

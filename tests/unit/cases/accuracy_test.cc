@@ -229,6 +229,18 @@ TEST(Accuracy, ErrorsOfTheDecksEntriesCountFirst)
   EXPECT_EQ(problems_of(deck, slow).at(0).find(rate), std::string::npos);
 }
 
+// Each scene against its own reference.
+TEST(Accuracy, TruthIsThatOfTheScene)
+{
+  const auto truth = [](const double length_ratio)
+  {
+    return accuracy_curve("balance tolerance", length_ratio).truth;
+  };
+  EXPECT_NE(truth(12.).find("tolerance of 1e-4"), std::string::npos) << truth(12.);
+  EXPECT_NE(truth(33.7).find("tolerance of 3e-4"), std::string::npos) << truth(33.7);
+  EXPECT_TRUE(accuracy_curve("balance tolerance", 50.).rows.empty());
+}
+
 // A long layer bends more slowly than the one that its rate has been measured of; how a
 // straight one buckles between walls has not been measured.
 TEST(Accuracy, ChoosesNoRateForLayersMoreSlenderThanTheRecord)
