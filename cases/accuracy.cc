@@ -367,7 +367,8 @@ std::string smallest_in_words(const AccuracyPlan &plan, const Ways &ways)
            other;
   return "smaller than the deck's other entries let it be: " + said +
          ". The smallest possible is " + tenths_text(smallest_of(ways.open)) +
-         ", with the rest of docs/accuracy.md at its finest. Give that or more, or leave " +
+         ", with the rest of docs/accuracy.md at its finest. Give that or more, or "
+         "leave " +
          entries + " out of the deck to be chosen (then " +
          tenths_text(smallest_of(freed)) + " is possible)." + other;
 }

@@ -75,8 +75,9 @@ double largest_error(const Line &line)
 /// L/h of the layers that the line speaks of, at most.
 double largest_length_ratio(const Line &line)
 {
-  return line.at("largest_length_ratio") == "any" ? std::numeric_limits<double>::infinity()
-                                                  : number(line, "largest_length_ratio");
+  const std::string column = "largest_length_ratio";
+  return line.at(column) == "any" ? std::numeric_limits<double>::infinity()
+                                  : number(line, column);
 }
 
 /// The least of these in the lines of @p knob that is no less than @p length_ratio; 0:

@@ -274,8 +274,9 @@ TEST(Accuracy, SlenderLayersNeedSlowerWalls)
   const std::string deck = scratch.write("bent.prm", bent);
   const auto error_at = [&](const std::string &length, const std::string &transits)
   {
-    const Parameters p = read_deck(deck, {"Accuracy=100 %", "Layer/Length ratio=" + length,
-                                          rate + "=" + transits});
+    const Parameters p =
+        read_deck(deck, {"Accuracy=100 %", "Layer/Length ratio=" + length,
+                         rate + "=" + transits});
     return find(p.accuracy, rate)->error.value_or(-1.);
   };
   for (const auto &[transits, least] : {std::pair{"282", 0.464}, std::pair{"940", 0.235}})
