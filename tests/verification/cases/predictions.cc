@@ -244,15 +244,16 @@ TEST(Prediction, NamesItsSharesAndWhatItHasMeasured)
     EXPECT_GT(measured.at("nanoseconds").get<double>(), 0.1) << measured;
 }
 
+// Three grains a bed scatter more than a layer of twelve: the factor of two that is asked
+// of predictions.
 TEST(Prediction, OfStepsHoldsForBentBedsLong)
 {
-  for (const char *interface : {"cemented", "frictional"})
-  {
-    SCOPED_TRACE(interface);
-    expect_within_half(steps_over_prediction(
-        "shortening/multilayer",
-        {"Layer/Grains across=9", std::string("Beds/Interface=") + interface}));
-  }
+  for (const std::string interface : {"cemented", "frictional"})
+    expect_within(2.,
+                  steps_over_prediction(
+                      "shortening/multilayer",
+                      {"Layer/Grains across=9", "Beds/Interface=" + interface}),
+                  interface);
 }
 
 TEST(Prediction, OfCostHoldsForEveryDeckOfMinutesLong)
