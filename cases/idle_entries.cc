@@ -1,9 +1,7 @@
 #include "cases/idle_entries.h"
 
+#include "cases/all_parameters.h"
 #include "cases/deck_reader.h"
-#include "cases/declarations.h"
-
-#include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
 #include <map>
@@ -197,15 +195,9 @@ namespace
 /// Values of all entries that nobody has set.
 std::map<std::string, std::string> defaults()
 {
-  Parameters scratch;
-  dealii::ParameterHandler prm;
-  Declarations declarations(prm);
-  std::vector<std::string> sections;
-  for (const Section &section : all_sections())
-    sections.push_back(section.name);
-  declare_parameters(scratch, sections, declarations);
+  const AllParameters all;
   std::map<std::string, std::string> values;
-  for (const Declarations::Entry &entry : declarations.entries())
+  for (const Declarations::Entry &entry : all.entries())
     values[entry.path] = entry.default_value;
   return values;
 }

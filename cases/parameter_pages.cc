@@ -1,8 +1,6 @@
 // What the program says of its parameters: on the terminal and as docs/parameters.md.
+#include "cases/all_parameters.h"
 #include "cases/deck_reader.h"
-#include "cases/declarations.h"
-
-#include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
 #include <cctype>
@@ -12,28 +10,6 @@ namespace antiform::cases
 {
 namespace
 {
-/// All that a deck may say.
-class AllParameters
-{
-public:
-  AllParameters()
-  {
-    std::vector<std::string> names;
-    for (const Section &section : all_sections())
-      names.push_back(section.name);
-    declare_parameters(defaults_, names, declarations_);
-  }
-  const std::vector<Declarations::Entry> &entries() const
-  {
-    return declarations_.entries();
-  }
-
-private:
-  Parameters defaults_;
-  dealii::ParameterHandler prm_;
-  Declarations declarations_{prm_};
-};
-
 std::string section_path(const std::string &path)
 {
   const std::size_t slash = path.rfind('/');

@@ -1,9 +1,7 @@
 #include "cases/study_tables.h"
 
+#include "cases/all_parameters.h"
 #include "cases/deck_reader.h"
-#include "cases/declarations.h"
-
-#include <deal.II/base/parameter_handler.h>
 
 #include <nlohmann/json.hpp>
 
@@ -28,17 +26,11 @@ std::string without_numbers(const std::string &text)
 /// "Pa" of a documentation that ends in "[Pa].", "-" of one without.
 std::vector<std::string> units_of(const std::vector<std::string> &paths)
 {
-  Parameters defaults;
-  dealii::ParameterHandler prm;
-  Declarations declarations(prm);
-  std::vector<std::string> sections;
-  for (const Section &section : all_sections())
-    sections.push_back(section.name);
-  declare_parameters(defaults, sections, declarations);
+  const AllParameters all;
   std::vector<std::string> units;
   for (const std::string &path : paths)
   {
-    const Declarations::Entry *const entry = declarations.find(path);
+    const Declarations::Entry *const entry = all.find(path);
     const bool is_number =
         entry != nullptr && dynamic_cast<const Number *>(entry->pattern.get()) != nullptr;
     const std::string unit = is_number ? unit_of(*entry) : "";

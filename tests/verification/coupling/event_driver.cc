@@ -1,3 +1,4 @@
+#include "support/driver_books.h"
 #include "support/specimen_fixture.h"
 
 #include "coupling/static_system.h"
@@ -147,19 +148,6 @@ Ascent climb(Specimen &specimen, const DriverSettings &settings)
   EventDriver driver(body, settings);
   EXPECT_FALSE(driver.run_to(0.02)) << "the specimen did not fail";
   return {specimen.stress(driver.largest_force()), driver.report()};
-}
-
-/// What the books of a record leave open, over what they hold.
-double open_share(const DriverReport &report)
-{
-  double worst = 0., scale = 0.;
-  for (const LoadRecord &record : report.records)
-  {
-    const Energies &e = record.energies;
-    worst = std::max(worst, std::abs(e.boundary_work - e.stored_and_spent()));
-    scale = std::max(scale, e.magnitude());
-  }
-  return worst / scale;
 }
 } // namespace
 

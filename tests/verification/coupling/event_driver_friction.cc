@@ -1,5 +1,6 @@
 // The event driver where joints slide from the beginning: two blocks with a plane between
 // them in closed form, packed specimens beside slow explicit loading.
+#include "support/driver_books.h"
 #include "support/slow_loading.h"
 #include "support/specimen_fixture.h"
 
@@ -98,19 +99,6 @@ DriverSettings close_balance(const double largest_step, const bool accelerated =
     settings.accelerate_after = settings.most_corrections;
   settings.stop_drop = 0.;
   return settings;
-}
-
-/// What the books of the records leave open, over what they hold.
-double open_share(const DriverReport &report)
-{
-  double worst = 0., scale = 0.;
-  for (const LoadRecord &record : report.records)
-  {
-    const Energies &e = record.energies;
-    worst = std::max(worst, std::abs(e.boundary_work - e.stored_and_spent()));
-    scale = std::max(scale, e.magnitude());
-  }
-  return worst / scale;
 }
 
 void expect_balanced(const DriverReport &report, const BalanceRatios &limits)
