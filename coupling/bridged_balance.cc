@@ -348,10 +348,10 @@ double BridgedBalance::load_work(const Eigen::VectorXd &increment) const
   return grains_.load_work(increment.head(grains_.n_unknowns()));
 }
 
-double BridgedBalance::allowed_share(const Eigen::VectorXd &correction,
-                                     const double cap) const
+double BridgedBalance::deformation(const Eigen::VectorXd &increment,
+                                   const double negligible) const
 {
-  return grains_.allowed_share(correction.head(grains_.n_unknowns()), cap);
+  return grains_.deformation(increment.head(grains_.n_unknowns()), negligible);
 }
 
 void BridgedBalance::add_energies(Energies &energies) const

@@ -41,14 +41,14 @@ public:
   /// The larger mean of grains and of mesh, the largest of both.
   BalanceRatios ratios() const override;
   double conjugate_force() const override;
-  Eigen::VectorXd solve(const Eigen::VectorXd &r) const override
+  Eigen::VectorXd correction(const Eigen::VectorXd &r) override
   {
     return inverse_->solve(r);
   }
   const Eigen::VectorXd &tangent() const override { return tangent_; }
   void move(const Eigen::VectorXd &increment) override;
   double load_work(const Eigen::VectorXd &increment) const override;
-  double allowed_share(const Eigen::VectorXd &correction, double cap) const override;
+  double deformation(const Eigen::VectorXd &increment, double negligible) const override;
   const Eigen::VectorXd &levers() const override { return levers_; }
   void add_energies(Energies &energies) const override;
 

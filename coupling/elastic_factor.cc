@@ -5,6 +5,8 @@
 #include <Eigen/CholmodSupport>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <vector>
 
 namespace antiform::coupling
@@ -34,6 +36,7 @@ struct ElasticFactor::Factor
   std::vector<Panel> panels;
   const int *rows = nullptr, *permutation = nullptr;
   const double *values = nullptr;
+  std::vector<float> rounded; ///< values in single precision; empty: not wanted
   int most_rows = 0;
 
   void find_panels()
@@ -52,7 +55,89 @@ struct ElasticFactor::Factor
       most_rows = std::max(most_rows, panels.back().n_rows);
     }
   }
+
+  /// x = A^-1 b in the precision of the values of L. b is divided by @p scale before, x
+  /// multiplied by it afterwards.
+  template <typename Real>
+  Eigen::VectorXd
+  solve(const Real *L, const Eigen::VectorXd &right, const double scale) const;
+
+private:
+  template <typename Real>
+  using Column = Eigen::Map<const Eigen::Matrix<Real, Eigen::Dynamic, 1>>;
+
+  /// x = L^-1 x and x = L^-T x. \param below space for the most rows of a panel
+  template <typename Real>
+  void forward(const Real *L, Real *x, std::vector<Real> &below) const;
+  template <typename Real>
+  void backward(const Real *L, Real *x, std::vector<Real> &below) const;
 };
+
+template <typename Real>
+Eigen::VectorXd ElasticFactor::Factor::solve(const Real *const L,
+                                             const Eigen::VectorXd &right,
+                                             const double scale) const
+{
+  const auto n = static_cast<std::size_t>(right.size());
+  std::vector<Real> x(n), below(static_cast<std::size_t>(most_rows));
+  for (std::size_t i = 0; i < n; ++i)
+    x[i] = static_cast<Real>(right[permutation[i]] / scale);
+  forward(L, x.data(), below);
+  backward(L, x.data(), below);
+  Eigen::VectorXd solution(right.size());
+  for (std::size_t i = 0; i < n; ++i)
+    solution[permutation[i]] = scale * static_cast<double>(x[i]);
+  return solution;
+}
+
+template <typename Real>
+void ElasticFactor::Factor::forward(const Real *const L,
+                                    Real *const x,
+                                    std::vector<Real> &below) const
+{
+  for (const Panel &panel : panels)
+  {
+    Real *const own = x + panel.first;
+    const int *const others = rows + panel.rows + panel.n_columns;
+    const int n_below = panel.n_rows - panel.n_columns;
+    std::fill_n(below.begin(), n_below, Real(0));
+    Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 1>> sum(below.data(), n_below);
+    for (int c = 0; c < panel.n_columns; ++c)
+    {
+      const Real *const column = L + panel.values + c * panel.n_rows;
+      own[c] /= column[c];
+      for (int r = c + 1; r < panel.n_columns; ++r)
+        own[r] -= own[c] * column[r];
+      sum += own[c] * Column<Real>(column + panel.n_columns, n_below);
+    }
+    for (int r = 0; r < n_below; ++r)
+      x[others[r]] -= below[r];
+  }
+}
+
+template <typename Real>
+void ElasticFactor::Factor::backward(const Real *const L,
+                                     Real *const x,
+                                     std::vector<Real> &below) const
+{
+  for (auto panel = panels.rbegin(); panel != panels.rend(); ++panel)
+  {
+    Real *const own = x + panel->first;
+    const int *const others = rows + panel->rows + panel->n_columns;
+    const int n_below = panel->n_rows - panel->n_columns;
+    for (int r = 0; r < n_below; ++r)
+      below[r] = x[others[r]];
+    const Column<Real> known(below.data(), n_below);
+    for (int c = panel->n_columns - 1; c >= 0; --c)
+    {
+      const Real *const column = L + panel->values + c * panel->n_rows;
+      Real value = own[c] - known.dot(Column<Real>(column + panel->n_columns, n_below));
+      for (int r = c + 1; r < panel->n_columns; ++r)
+        value -= column[r] * own[r];
+      own[c] = value / column[c];
+    }
+  }
+}
 
 ElasticFactor::ElasticFactor(const Eigen::SparseMatrix<double> &matrix)
     : factor_(std::make_unique<Factor>())
@@ -75,55 +160,44 @@ ElasticFactor &ElasticFactor::operator=(ElasticFactor &&) noexcept = default;
 
 Eigen::VectorXd ElasticFactor::solve(const Eigen::VectorXd &right) const
 {
-  const Factor &L = *factor_;
-  const auto n = static_cast<std::size_t>(right.size());
-  std::vector<double> x(n), below(static_cast<std::size_t>(L.most_rows));
-  for (std::size_t i = 0; i < n; ++i)
-    x[i] = right[L.permutation[i]];
+  return factor_->solve(factor_->values, right, 1.);
+}
 
-  for (const Factor::Panel &panel : L.panels)
+void ElasticFactor::round_for_corrections(const Eigen::SparseMatrix<double> &matrix,
+                                          const double most_left)
+{
+  constexpr int rounds = 12;
+  const cholmod_factor &L = factor_->cholesky.factor();
+  factor_->rounded.assign(factor_->values, factor_->values + L.xsize);
+  const auto A = matrix.selfadjointView<Eigen::Lower>();
+  // What is left turns, round by round, to the softest motions, of which most is left.
+  std::mt19937 random(1);
+  Eigen::VectorXd left(matrix.rows());
+  for (double &entry : left)
+    entry = static_cast<double>(random()) / 2147483648. - 1.;
+  for (int k = 0; k < rounds; ++k)
   {
-    double *const own = x.data() + panel.first;
-    const int *const rows = L.rows + panel.rows;
-    const int n_below = panel.n_rows - panel.n_columns;
-    std::fill_n(below.begin(), n_below, 0.);
-    Eigen::Map<Eigen::VectorXd> sum(below.data(), n_below);
-    for (int c = 0; c < panel.n_columns; ++c)
+    const Eigen::VectorXd force = A * left;
+    const double before = left.dot(force);
+    left -= correction(force);
+    const double after = left.dot(A * left);
+    if (!(after <= most_left * most_left * before))
     {
-      const double *const column = L.values + panel.values + c * panel.n_rows;
-      own[c] /= column[c];
-      for (int r = c + 1; r < panel.n_columns; ++r)
-        own[r] -= own[c] * column[r];
-      sum +=
-          own[c] * Eigen::Map<const Eigen::VectorXd>(column + panel.n_columns, n_below);
+      std::vector<float>().swap(factor_->rounded);
+      return;
     }
-    for (int r = 0; r < n_below; ++r)
-      x[rows[panel.n_columns + r]] -= below[r];
+    if (!(after > 0.))
+      return;
+    left /= std::sqrt(after);
   }
+}
 
-  for (auto panel = L.panels.rbegin(); panel != L.panels.rend(); ++panel)
-  {
-    double *const own = x.data() + panel->first;
-    const int *const rows = L.rows + panel->rows;
-    const int n_below = panel->n_rows - panel->n_columns;
-    for (int r = 0; r < n_below; ++r)
-      below[r] = x[rows[panel->n_columns + r]];
-    const Eigen::Map<const Eigen::VectorXd> others(below.data(), n_below);
-    for (int c = panel->n_columns - 1; c >= 0; --c)
-    {
-      const double *const column = L.values + panel->values + c * panel->n_rows;
-      double value = own[c] - others.dot(Eigen::Map<const Eigen::VectorXd>(
-                                  column + panel->n_columns, n_below));
-      for (int r = c + 1; r < panel->n_columns; ++r)
-        value -= column[r] * own[r];
-      own[c] = value / column[c];
-    }
-  }
-
-  Eigen::VectorXd solution(right.size());
-  for (std::size_t i = 0; i < n; ++i)
-    solution[L.permutation[i]] = x[i];
-  return solution;
+Eigen::VectorXd ElasticFactor::correction(const Eigen::VectorXd &right) const
+{
+  const double scale = right.cwiseAbs().maxCoeff();
+  if (factor_->rounded.empty() || !(scale > 0.))
+    return solve(right);
+  return factor_->solve(factor_->rounded.data(), right, scale);
 }
 
 Eigen::Index ElasticFactor::size() const

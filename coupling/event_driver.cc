@@ -144,7 +144,7 @@ void EventDriver::break_apart(const std::vector<discrete::LoadedElement> &batch,
 
 void EventDriver::correct(const int corrections)
 {
-  Eigen::VectorXd step = body_.solve(unbalanced_);
+  Eigen::VectorXd step = body_.correction(unbalanced_);
   ++report_.solves;
   far_field_waits_ = false;
   if (corrections >= settings_.accelerate_after)
@@ -152,10 +152,15 @@ void EventDriver::correct(const int corrections)
     const Eigen::VectorXd &levers = body_.levers();
     step = anderson_.increment(step.cwiseProduct(levers)).cwiseQuotient(levers);
   }
-  const double share = body_.allowed_share(step, settings_.correction_cap);
-  if (share < 1.)
+  const double deformation = body_.deformation(
+      step, std::min(settings_.part_length, settings_.correction_cap));
+  if (deformation > settings_.correction_cap)
+  {
     anderson_.reset();
-  move(share * step, 0.);
+    move(settings_.correction_cap / deformation * step, 0., settings_.correction_cap);
+  }
+  else
+    move(step, 0., deformation);
 }
 
 void EventDriver::hand_over()
@@ -190,7 +195,9 @@ void EventDriver::step_towards(const double target)
   evaluate(); // as one that goes on from a checkpoint must
   const double left = std::abs(target - load_), size = step_size(sign);
   ++report_.load_steps;
-  move(sign * std::min(size, left) * body_.tangent(), sign * std::min(size, left));
+  const double load_step = sign * std::min(size, left);
+  const Eigen::VectorXd increment = load_step * body_.tangent();
+  move(increment, load_step, body_.deformation(increment, settings_.part_length));
   if (size >= left)
     load_ = target;
 }
@@ -234,13 +241,18 @@ double EventDriver::step_size(const double sign)
 }
 
 /// Displace the body. A long way is taken in parts, since the trapezoidal rule, by which
-/// work is booked, sees no kink of the law within a part.
-void EventDriver::move(const Eigen::VectorXd &increment, const double load_step)
+/// work is booked, sees no kink of the law within a part. \param deformation of a joint
+/// in it, over sigma_b / k_n [-]
+void EventDriver::move(const Eigen::VectorXd &increment,
+                       const double load_step,
+                       const double deformation)
 {
-  const double share = body_.allowed_share(increment, settings_.part_length);
-  const int n = static_cast<int>(std::ceil(std::min(1. / share, settings_.most_parts)));
-  for (int part = 0; part < n; ++part)
+  const int n = static_cast<int>(std::ceil(
+      std::clamp(deformation / settings_.part_length, 1., settings_.most_parts)));
+  for (int part = 1; part <= n; ++part)
+  {
     move_a_part(increment / n, load_step / n);
+  }
 }
 
 /// Displace the body and book the work of its supports, of its loads, and of what holds

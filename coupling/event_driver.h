@@ -32,7 +32,7 @@ struct DriverSettings
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
   /// Likewise of a part of a move: longer ones are made and booked in parts.
   double part_length = 0.25;
-  double most_parts = 400.; ///< [-]
+  double most_parts = 400.; ///< [-]; a load step that would take more has longer ones
 
   LocalSettings local; ///< of bodies that are grains alone
   /// While bonds of parts that were balanced apart still break, the whole may be that
@@ -67,7 +67,7 @@ struct LoadRecord
 struct DriverReport
 {
   std::int64_t load_steps = 0;
-  std::int64_t solves = 0;      ///< with the factor, the tangent's included
+  std::int64_t solves = 0;      ///< with the factor: corrections and the first tangent
   std::int64_t evaluations = 0; ///< of the forces, without those of explicit motion
   std::int64_t batches = 0;     ///< of bonds that broke together
   std::int64_t breaks = 0;      ///< in batches
@@ -128,7 +128,7 @@ private:
   void hand_over();
   void come_to_rest(double mean);
   double step_size(double sign);
-  void move(const Eigen::VectorXd &increment, double load_step);
+  void move(const Eigen::VectorXd &increment, double load_step, double deformation);
   void move_a_part(const Eigen::VectorXd &increment, double load_step);
   void evaluate();
   bool is_balanced() const;

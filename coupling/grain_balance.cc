@@ -149,6 +149,7 @@ void GrainBalance::assemble(const std::vector<Eigen::Triplet<double>> &springs)
   matrix_.resize(n_unknowns(), n_unknowns());
   matrix_.setFromTriplets(entries.begin(), entries.end());
   factor_.emplace(matrix_);
+  is_precision_chosen_ = false;
   tangent_ = solve(right) + rate_;
 }
 
@@ -175,8 +176,7 @@ void GrainBalance::add_forces(const discrete::StepTime &now,
   add_outer_forces();
   for (std::size_t i = 0; i < grains.size(); ++i)
   {
-    double *const force[3] = {&grains.force_x[i], &grains.force_y[i],
-                              &grains.torque[i]};
+    double *const force[3] = {&grains.force_x[i], &grains.force_y[i], &grains.torque[i]};
     for (unsigned int c = 0; c < 3; ++c)
       if (prescribed_[index(i, c)] > 0.)
       {
@@ -255,6 +255,15 @@ Eigen::VectorXd GrainBalance::solve(const Eigen::VectorXd &r) const
   return factor_->solve((prescribed_.array() > 0.).select(0., r));
 }
 
+Eigen::VectorXd GrainBalance::correction(const Eigen::VectorXd &r)
+{
+  constexpr double most_left = 0.01; // of an error
+  if (!is_precision_chosen_)
+    factor_->round_for_corrections(matrix_, most_left);
+  is_precision_chosen_ = true;
+  return factor_->correction((prescribed_.array() > 0.).select(0., r));
+}
+
 void GrainBalance::move(const Eigen::VectorXd &increment)
 {
   Grains &grains = state_.grains;
@@ -282,13 +291,15 @@ double GrainBalance::load_potential() const
   return work;
 }
 
-double GrainBalance::allowed_share(const Eigen::VectorXd &correction,
-                                   const double cap) const
+double GrainBalance::deformation(const Eigen::VectorXd &increment,
+                                 const double negligible) const
 {
-  if (most_deformation_ * correction.cwiseProduct(levers_).cwiseAbs().maxCoeff() <= cap)
-    return 1.;
+  const double bound =
+      most_deformation_ * increment.cwiseProduct(levers_).cwiseAbs().maxCoeff();
+  if (bound <= negligible)
+    return bound;
   const Joints &joints = state_.joints;
-  double worst = 0.; // deformation over sigma_b / k_n
+  double worst = 0.;
   for (const discrete::JointGroup &group : joints.groups)
   {
     const discrete::BondConstants law = discrete::constants(group.law);
@@ -303,13 +314,13 @@ double GrainBalance::allowed_share(const Eigen::VectorXd &correction,
         d[r] = 0.;
         for (unsigned int a = 0; a < 6; ++a)
           d[r] += rows[r][a] *
-                  correction[index(a < 3 ? joints.first[j] : joints.second[j], a % 3)];
+                  increment[index(a < 3 ? joints.first[j] : joints.second[j], a % 3)];
       }
       const double deformation =
           std::sqrt(d[0] * d[0] + d[1] * d[1]) + joints.half_length[j] * std::abs(d[2]);
       worst = std::max(worst, deformation * joints.stiffness[j] / law.tensile_strength);
     }
   }
-  return worst > cap ? cap / worst : 1.;
+  return worst;
 }
 } // namespace antiform::coupling

@@ -19,10 +19,9 @@ struct BalanceRatios
   /// Their mean over the mean force of a joint, or over a twentieth of the largest that
   /// this has been, where joints carry less: rubble carries next to nothing [-].
   double mean = 0.;
-  double largest = 0.; ///< their largest over the same [-]
-  double of_strength =
-      0.; ///< their largest over what an element carries when it breaks
-          ///< in tension, in the mean of the breakable joints [-]
+  double largest = 0.;     ///< their largest over the same [-]
+  double of_strength = 0.; ///< their largest over what an element carries when it breaks
+                           ///< in tension, in the mean of the breakable joints [-]
   bool within(const BalanceRatios &limits) const
   {
     return mean < limits.mean && largest < limits.largest &&
@@ -36,7 +35,7 @@ class GrainBalance;
 /// present state, and a symmetric elastic operator, no softer than the body, to correct
 /// it with. The vectors have an entry for each of its unknowns, prescribed ones
 /// included; what they mean is the body's business. A body of grains, mesh and bridging
-/// domain has its saddle point inside solve().
+/// domain has its saddle point inside correction().
 class BalanceOperator
 {
 public:
@@ -51,16 +50,19 @@ public:
   /// Force conjugate to the load parameter, that is, the work per unit of it that the
   /// prescribed motion does at the last residual() [J].
   virtual double conjugate_force() const = 0;
-  /// Correction for the unbalanced force @p r; 0 where motion is prescribed.
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd &r) const = 0;
+  /// Correction for the unbalanced force @p r: the operator's, to a hundredth of it in
+  /// the norm of energy; 0 where motion is prescribed.
+  virtual Eigen::VectorXd correction(const Eigen::VectorXd &r) = 0;
   /// Motion per unit of the load parameter: prescribed, and what follows elastically.
   virtual const Eigen::VectorXd &tangent() const = 0;
   /// Add @p increment to the displacements.
   virtual void move(const Eigen::VectorXd &increment) = 0;
   /// Work of the constant loads in such a move [J].
   virtual double load_work(const Eigen::VectorXd &increment) const = 0;
-  /// Share of @p correction, at most 1, that deforms no joint beyond the cap.
-  virtual double allowed_share(const Eigen::VectorXd &correction, double cap) const = 0;
+  /// Largest deformation of a joint in a move, over sigma_b / k_n [-]; where it is at
+  /// most @p negligible, anything up to that.
+  virtual double deformation(const Eigen::VectorXd &increment,
+                             double negligible) const = 0;
   /// Lengths that turn the unknowns into displacements: 1, or radii of grains [m].
   virtual const Eigen::VectorXd &levers() const = 0;
   /// Add what is stored beside the joints and the walls' contacts: in a mesh.
@@ -109,11 +111,14 @@ public:
   /// Of unbalanced forces, their mean and largest [N], over what the joints carry.
   BalanceRatios over_joint_forces(double mean, double largest) const;
   double conjugate_force() const override;
-  Eigen::VectorXd solve(const Eigen::VectorXd &r) const override;
+  /// Correction by the operator itself.
+  Eigen::VectorXd solve(const Eigen::VectorXd &r) const;
+  /// In single precision where that leaves less than a hundredth of an error.
+  Eigen::VectorXd correction(const Eigen::VectorXd &r) override;
   const Eigen::VectorXd &tangent() const override { return tangent_; }
   void move(const Eigen::VectorXd &increment) override;
   double load_work(const Eigen::VectorXd &increment) const override;
-  double allowed_share(const Eigen::VectorXd &correction, double cap) const override;
+  double deformation(const Eigen::VectorXd &increment, double negligible) const override;
   const Eigen::VectorXd &levers() const override { return levers_; }
   GrainBalance *grains_alone() override { return this; }
 
@@ -188,5 +193,7 @@ private:
   Eigen::VectorXd levers_, tangent_, dead_loads_;
   Eigen::SparseMatrix<double> matrix_;
   std::optional<ElasticFactor> factor_;
+  /// Of the present factor, at its first correction: grains of a BridgedBalance have none.
+  bool is_precision_chosen_ = false;
 };
 } // namespace antiform::coupling

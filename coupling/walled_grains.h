@@ -22,8 +22,9 @@ struct BearingWall
 
 /// Bonded grains between rigid frictionless walls, in balance. The place of a wall is an
 /// unknown more, behind those of the grains: prescribed, or free under its load. Contacts
-/// of a wall push only; the operator has the springs of all that have pressed so far, so
-/// that it is no softer than the body.
+/// of a wall push only; the operator has the springs of all that had pressed when it was
+/// last assembled, at the beginning of a load step, so that it is no softer than the body
+/// but for contacts that close within one.
 class WalledGrains : public GrainBalance
 {
 public:

@@ -44,6 +44,9 @@ bool set(DriverSettings &settings, const std::string &text)
       {"radius", &settings.local.radius},
       {"core", &settings.local.core},
       {"share", &settings.local.share},
+      {"part_length", &settings.part_length},
+      {"most_parts", &settings.most_parts},
+      {"correction_cap", &settings.correction_cap},
       {"slack", &settings.slack},
       {"most_breaks", &settings.most_breaks},
       {"before_peak", &settings.settled_before_peak},
@@ -102,19 +105,19 @@ void print(const char *what, const DriverReport &report, const double seconds)
       report.explicit_steps, seconds);
 }
 
-/// Milliseconds of the processor that a solve takes, and an evaluation of the forces.
+/// Milliseconds of the processor that a correction takes, and an evaluation of the forces.
 void print_unit_costs(Specimen &specimen)
 {
   GrainBalance body(specimen.state, specimen.platens);
   constexpr int n = 50;
-  Eigen::VectorXd r = body.residual();
+  Eigen::VectorXd r = body.correction(body.residual()); // chooses its precision
   const double start = processor_seconds();
   for (int k = 0; k < n; ++k)
-    r = body.solve(body.tangent());
+    r = body.correction(body.tangent());
   const double solved = processor_seconds();
   for (int k = 0; k < n; ++k)
     body.residual();
-  std::printf("  a solve %.3f ms, an evaluation %.3f ms (damaged body)\n",
+  std::printf("  a correction %.3f ms, an evaluation %.3f ms (damaged body)\n",
               1e3 * (solved - start) / n, 1e3 * (processor_seconds() - solved) / n);
 }
 

@@ -40,6 +40,38 @@ TEST(ElasticFactor, SolvesAChainOfSprings)
     EXPECT_NEAR(u[i], 0.5 * (i + 1) * (n - i), 1e-10 * n * n);
 }
 
+TEST(ElasticFactor, RoundsForCorrectionsWhatLeavesLittleOfAnError)
+{
+  const int n = 300; // condition 4e4: single precision leaves some 1e-3
+  const Eigen::SparseMatrix<double> matrix = chain(n, true);
+  ElasticFactor factor(matrix);
+  const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(n, 1., 2.);
+  const Eigen::VectorXd exact = factor.solve(force);
+  EXPECT_EQ(factor.correction(force), exact); // not asked for
+  factor.round_for_corrections(matrix, 0.01);
+  const double left = (factor.correction(force) - exact).norm() / exact.norm();
+  EXPECT_LT(left, 0.01);
+  EXPECT_GT(left, 1e-9); // in single precision it is
+  // Forces beyond its range, as those of a millimetre's grains near balance.
+  const Eigen::VectorXd tiny = factor.correction(1e-60 * force);
+  EXPECT_LT((1e60 * tiny - exact).norm(), 0.01 * exact.norm());
+  EXPECT_EQ(factor.correction(0. * force), 0. * force);
+}
+
+TEST(ElasticFactor, IsNotRoundedForABodyThatBendsEasily)
+{
+  // A beam: second differences twice over, condition 1e13. In single precision its
+  // softest motions are lost.
+  const int n = 3000;
+  const Eigen::SparseMatrix<double> whole =
+      chain(n, true).selfadjointView<Eigen::Lower>();
+  const Eigen::SparseMatrix<double> matrix = whole * whole;
+  ElasticFactor factor(matrix);
+  factor.round_for_corrections(matrix, 0.01);
+  const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(n, -1., 2.);
+  EXPECT_EQ(factor.correction(force), factor.solve(force));
+}
+
 TEST(ElasticFactor, RefusesABodyThatHangsOnNothing)
 {
   Eigen::SparseMatrix<double> matrix = chain(50, true);
@@ -141,8 +173,8 @@ TEST(OverstressedElements, AreAllThatTheLawFinds)
     {
       const double factor =
           discrete::load_factor(
-              discrete::bonded_element(rock.joints, j, e,
-                                       discrete::deformation(rock.grains, rock.joints, j)))
+              discrete::bonded_element(
+                  rock.joints, j, e, discrete::deformation(rock.grains, rock.joints, j)))
               .value;
       if (factor < 1. || (j == 17 && e == 1))
         continue;

@@ -101,7 +101,7 @@ TEST(BridgedBalance, OperatorIsSymmetricAndKeepsTheConstraint)
   CoupledLayer layer{CoupledShape()};
   BridgedBalance body = body_of(layer);
   const Eigen::VectorXd a = noise(body.n_unknowns(), 1), b = noise(body.n_unknowns(), 2);
-  const Eigen::VectorXd from_a = body.solve(a), from_b = body.solve(b);
+  const Eigen::VectorXd from_a = body.correction(a), from_b = body.correction(b);
   EXPECT_NEAR(b.dot(from_a) / std::sqrt(a.dot(from_a) * b.dot(from_b)),
               a.dot(from_b) / std::sqrt(a.dot(from_a) * b.dot(from_b)), 1e-10);
   EXPECT_GT(a.dot(from_a), 0.);
@@ -183,11 +183,11 @@ TEST(BridgedBalance, OperatorIsThatOfTheResidual)
   Driven run(layer, settings);
   run.driver.run_to(1e-6); // contacts of the walls press
   BridgedBalance &body = run.body;
-  Eigen::VectorXd step = body.solve(noise(body.n_unknowns(), 3));
+  Eigen::VectorXd step = body.correction(noise(body.n_unknowns(), 3));
   step *= 1e-9 / step.cwiseProduct(body.levers()).cwiseAbs().maxCoeff();
   const Eigen::VectorXd before = body.residual();
   body.move(step);
-  const Eigen::VectorXd back = body.solve(before - body.residual());
+  const Eigen::VectorXd back = body.correction(before - body.residual());
   // Loaded to strains of 1e-6, whose share the geometric terms have.
   EXPECT_LT(difference(back, step), 1e-4);
 }
@@ -356,7 +356,7 @@ void expect_settles(const CoupledShape &shape)
     return books.stored_and_spent();
   };
   const Eigen::VectorXd balance = place_of(body, layer);
-  Eigen::VectorXd push = body.solve(noise(body.n_unknowns(), 4));
+  Eigen::VectorXd push = body.correction(noise(body.n_unknowns(), 4));
   push *= 1e-3 / push.cwiseProduct(body.levers()).cwiseAbs().maxCoeff();
   body.move(push);
   const double before = stored();

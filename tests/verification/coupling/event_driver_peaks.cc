@@ -69,8 +69,8 @@ void expect_same_mean(const std::function<double(std::uint64_t)> &one,
 } // namespace
 
 // Slow loading under local damping: under the combined form cracks run on more often. The
-// peak of one specimen is chaotic: 8 % are allowed it, and where a break counts for more, of
-// 296 grains, 10 %.
+// peak of one specimen is chaotic: 8 % are allowed it, and where a break counts for more,
+// of 296 grains, 10 %.
 TEST(EventDriverPeaks, AreThoseOfSlowLoadingInTheMeanOfSmallSpecimensLong)
 {
   expect_same_mean([](const std::uint64_t seed) { return driver_peak(12., seed); },
@@ -105,7 +105,7 @@ public:
   using GrainBalance::GrainBalance;
   GrainBalance *grains_alone() override { return nullptr; } // no local moves
 
-  Eigen::VectorXd solve(const Eigen::VectorXd &r) const override
+  Eigen::VectorXd correction(const Eigen::VectorXd &r) override
   {
     const discrete::Joints &joints = state().joints;
     std::vector<Eigen::Triplet<double>> lost;
@@ -259,8 +259,7 @@ void expect_few_solves(const std::uint64_t seed)
   EXPECT_GT(at_peak.breaks, 10000);
   EXPECT_LE(at_peak.hand_overs, 1);
   const double end = driver.report().records.back().load;
-  const double slow =
-      slow_loading(other, 1000., end, 0.03, {}, {}, local_damping()).peak;
+  const double slow = slow_loading(other, 1000., end, 0.03, {}, {}, local_damping()).peak;
   std::printf("peak %.2f MPa, slow %.2f MPa\n", 1e-6 * one.stress(peak), 1e-6 * slow);
   EXPECT_NEAR(one.stress(peak) / slow, 1., 0.05);
 }
