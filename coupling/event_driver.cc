@@ -241,8 +241,9 @@ double EventDriver::step_size(const double sign)
 }
 
 /// Displace the body. A long way is taken in parts, since the trapezoidal rule, by which
-/// work is booked, sees no kink of the law within a part. \param deformation of a joint
-/// in it, over sigma_b / k_n [-]
+/// work is booked, sees no kink of the law within a part. A correction (no load step) of
+/// several parts ends after the one in which it began to go uphill, as one that was
+/// accelerated too far does. \param deformation of a joint in it, over sigma_b / k_n [-]
 void EventDriver::move(const Eigen::VectorXd &increment,
                        const double load_step,
                        const double deformation)
@@ -252,6 +253,8 @@ void EventDriver::move(const Eigen::VectorXd &increment,
   for (int part = 1; part <= n; ++part)
   {
     move_a_part(increment / n, load_step / n);
+    if (load_step == 0. && part < n && unbalanced_.dot(increment) < 0.)
+      return anderson_.reset();
   }
 }
 

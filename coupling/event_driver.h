@@ -31,7 +31,7 @@ struct DriverSettings
   double exclusion = 4.;       ///< radius about a break without others, mean diameters
   double correction_cap = 20.; ///< of a joint's deformation, over sigma_b / k_n [-]
   /// Likewise of a part of a move: longer ones are made and booked in parts.
-  double part_length = 0.25;
+  double part_length = 0.5;
   double most_parts = 400.; ///< [-]; a load step that would take more has longer ones
 
   LocalSettings local; ///< of bodies that are grains alone

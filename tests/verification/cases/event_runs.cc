@@ -191,8 +191,8 @@ void expect_same_numbers(const std::string &directory, const std::string &other)
 
 // Nothing but its own stiffness holds a slender layer, and where it fails its fold grows
 // by 0.4 of its thickness in three load steps: the long way is booked in parts short
-// enough for the cracks that close and open on it (open by 0.04 with ones of eight times
-// the length).
+// enough for the cracks that close and open on it, and long corrections do not go on
+// uphill (open by 0.002 where they do).
 TEST(EventRun, KeepsTheBooksOfASlenderLayerThatFails)
 {
   const TemporaryFolder folder;
