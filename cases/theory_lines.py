@@ -2,6 +2,8 @@
 
 import csv
 import io
+import os
+import shutil
 import subprocess
 
 import numpy as np
@@ -9,6 +11,12 @@ import numpy as np
 
 class TheoryError(Exception):
     """The program does not run, or has no closed form for these values."""
+
+
+def installed_program():
+    """antiform where a shell finds it, or else as it was built beside these scripts."""
+    root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    return shutil.which("antiform") or os.path.join(root, "build", "antiform")
 
 
 def theory_along(program, deck, entries, overrides=()):
@@ -22,7 +30,8 @@ def theory_along(program, deck, entries, overrides=()):
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except OSError as error:
-        raise TheoryError(str(error)) from error
+        raise TheoryError(f"{program} does not run ({error.strerror}); say with --antiform "
+                          "where the program is") from error
     if done.returncode != 0:
         raise TheoryError(done.stderr or done.stdout)
     head, *rows = csv.reader(io.StringIO(done.stdout))

@@ -12,7 +12,6 @@ import argparse
 import glob
 import json
 import os
-import shutil
 import sys
 
 import matplotlib
@@ -27,7 +26,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 from depth_axis import add_theta_axes  # noqa: E402
 from picture_style import DPI, SHEAR_CRACK, TENSION_CRACK  # noqa: E402
 from run_files import Grid, read_deck, read_table  # noqa: E402
-from theory_lines import TheoryError, theory_along  # noqa: E402
+from theory_lines import TheoryError, installed_program, theory_along  # noqa: E402
 
 COLOURS = ("#b5651d", "#2e8b57", "#1f4fa8", "#7b3294")  # of the contrasts, ascending
 MARKERS = {"surface interface": "o", "grain cover": "s", "bridging domain": "^"}
@@ -320,7 +319,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("directory", help="of the study; for the picture too")
     parser.add_argument("--maps", type=float, help="contrast of the maps (the highest)")
-    parser.add_argument("--antiform", default=shutil.which("antiform") or "antiform",
+    parser.add_argument("--antiform", default=installed_program(),
                         help="the program, for the closed forms")
     arguments = parser.parse_args()
     members = members_of(arguments.directory)
