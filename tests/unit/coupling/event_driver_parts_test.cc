@@ -42,7 +42,7 @@ TEST(ElasticFactor, SolvesAChainOfSprings)
 
 TEST(ElasticFactor, RoundsForCorrectionsWhatLeavesLittleOfAnError)
 {
-  const int n = 300; // condition 4e4: single precision leaves some 1e-3
+  const int n = 300; // condition 4e4, of which single precision keeps enough
   const Eigen::SparseMatrix<double> matrix = chain(n, true);
   ElasticFactor factor(matrix);
   const Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(n, 1., 2.);
